@@ -1,0 +1,24 @@
+//! plumb: a ray tracer on the GPU for the scene language of a university course.
+//!
+//! The modules, in the order in which data flows through them:
+//!
+//! ```text
+//! scene text ─ scene::lex ─ scene::parse ─► scene::Scene (plain f64 data)
+//!                                             │
+//!                                          prepare ─► Prepared (what depends on the scene alone, exact, then rounded)
+//!                                             │
+//!            gpu::features ─ gpu::compose ─ gpu::pack ─► gpu::device: dispatch ─┐
+//!                                             │                                 ├─► render: bands ─► image: PPM / PNG / EXR
+//!                                            cpu: the same tracer in Rust ──────┘
+//! ```
+//!
+//! [`render::render`] runs the whole of it; `src/cli/` only turns arguments into such calls.
+
+pub mod diagnostic;
+pub mod scene;
+pub mod prepare;
+pub mod real;
+pub mod cpu;
+pub mod gpu;
+pub mod render;
+pub mod image;
