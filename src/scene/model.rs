@@ -189,7 +189,12 @@ impl Object {
             (Shape::Plane { .. }, Surface::Tiled { .. }) => "tiled_plane",
             (Shape::Plane { .. }, Surface::Procedural { .. }) => "pplane",
             (Shape::Plane { .. }, Surface::Textured { .. }) => "texplane",
-            (Shape::Plane { extent: Some(_), .. }, Surface::Plain) => "fplane",
+            (
+                Shape::Plane {
+                    extent: Some(_), ..
+                },
+                Surface::Plain,
+            ) => "fplane",
             (Shape::Plane { .. }, Surface::Plain) => "plane",
         }
     }
@@ -198,6 +203,10 @@ impl Object {
 impl Light {
     /// The entity type that the scene file calls this light by.
     pub fn entity(&self) -> &'static str {
-        if self.cone.is_some() { "spotlight" } else { "light" }
+        if self.cone.is_some() {
+            "spotlight"
+        } else {
+            "light"
+        }
     }
 }

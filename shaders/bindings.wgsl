@@ -1,0 +1,38 @@
+// What the host hands over. Struct offsets are those of src/gpu/pack.rs; a test compares them.
+
+// The rectangle of pixels that this dispatch makes: column and row of its top left pixel, columns and rows.
+struct Job {
+    first: vec2u,
+    size: vec2u,
+}
+
+@group(0) @binding(0) var<uniform> job: Job;
+//#if values
+// Red, green, blue as f32 (255 is a full byte), then the packed bytes as below.
+@group(0) @binding(1) var<storage, read_write> pixels: array<vec4u>;
+//#else
+// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
+@group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
+//#end
+//#if objects
+// One for each object of the scene, in file order.
+@group(0) @binding(2) var<storage, read> objects: array<Object>;
+//#end
+//#if plane_loop
+@group(0) @binding(3) var<storage, read> planes: array<Plane>;
+//#end
+//#if bvh
+@group(0) @binding(8) var<storage, read> bvh: array<BvhNode>;
+//#end
+//#if small_sphere_buffer
+@group(0) @binding(4) var<storage, read> small_spheres: array<SmallSphere>;
+//#end
+//#if wide_sphere_buffer
+@group(0) @binding(5) var<storage, read> wide_spheres: array<WideSphere>;
+//#end
+//#if tiled
+@group(0) @binding(6) var<storage, read> tiled_planes: array<Tiled>;
+//#end
+//#if pplane
+@group(0) @binding(7) var<storage, read> pplanes: array<Pplane>;
+//#end

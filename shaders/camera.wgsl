@@ -1,0 +1,26 @@
+// From a pixel to its ray, from a colour to its bytes. Twin: src/cpu/camera.rs.
+
+// A primary ray: base viewpoint (the origin), direction w through the screen, not of unit length.
+struct Ray {
+    pixel: vec2i,
+    w: vec3f,
+    w2: f32,
+}
+
+// The ray through a pixel, (0, 0) at the bottom left. Near the viewpoint's own column and row (CAMERA_ANCHOR) w.x and w.y
+// are small, and keep their relative accuracy.
+fn camera_getdir(pixel: vec2i) -> Ray {
+    let w = vec3f(vec2f(pixel - CAMERA_ANCHOR) * CAMERA_STEP + CAMERA_OFFSET, -CAMERA_DISTANCE);
+    return Ray(pixel, w, dot(w, w));
+}
+
+// From a reflectivity to 255 times the pixel's value: 255/t, t = s·|W| in world units.
+fn inverse_distance(ray: Ray, inverse: f32) -> f32 {
+    return CAMERA_GAIN * inverse / sqrt(ray.w2);
+}
+
+// The bytes of a pixel from 255 times its value, truncated; red lowest.
+fn camera_setpix(color: vec3f) -> u32 {
+    let bytes = vec3u(min(color, vec3f(255.0)));
+    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u);
+}

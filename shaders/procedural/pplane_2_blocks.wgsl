@@ -1,0 +1,8 @@
+// pplane shader 2: blocks of half a unit, by turns shader 1's colours (i + j + k even) and the material's ambient.
+fn pplane_2_blocks(at: PlanePoint) -> vec3f {
+    let odd = pplane_odd(at);
+    if odd.x + odd.y + odd.z == 0.0 || odd.x + odd.y + odd.z == 2.0 {
+        return pplane_1_angle(at);
+    }
+    return at.ambient;
+}

@@ -1,0 +1,231 @@
+//! The options that several subcommands share, and what their values may be: every refusal says what is allowed.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::thread;
+
+use anyhow::{Result, bail};
+use clap::ValueEnum;
+use clap::builder::NonEmptyStringValueParser;
+use plumb::cpu::debug::Shown;
+use plumb::render::{Backend, Settings};
+use plumb::scene::Scene;
+
+/// The most pixels a side, as `pixeldim` has it.
+const MOST_PIXELS: u32 = 1_000_000;
+/// More threads than any machine has; a typing error is told here, not by the system running out of them.
+const MOST_THREADS: usize = 4096;
+
+/// What changes which picture a scene is.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct PictureOptions {
+    /// Columns and rows of the picture, in place of the scene's pixeldim
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Planes count only where z ≤ T: 0 in the notes, 0.01 in the course's final program
+    #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = tolerance, allow_negative_numbers = true)]
+    pub(crate) screen_tolerance: f64,
+}
+
+impl PictureOptions {
+    /// Puts the size into the scene.
+    pub(crate) fn apply(&self, scene: &mut Scene) {
+        if let Some(size) = self.size {
+            scene.camera.pixeldim = size;
+        }
+    }
+
+    /// Settings with these options, everything else as it is without options.
+    pub(crate) fn settings(&self) -> Settings {
+        Settings { screen_tolerance: self.screen_tolerance, ..Settings::default() }
+    }
+}
+
+/// Everything that `plumb render` and the filter use share.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct RenderOptions {
+    /// The picture, by its ending .ppm, .png or .exr (EXR: the values before quantising); `-` is stdout, as PPM
+    #[arg(
+        short,
+        long,
+        value_name = "OUT",
+        long_help = "\
+The picture, by its ending .ppm, .png or .exr (EXR holds the values before quantising); `-` is stdout, as PPM.
+
+Without it: the scene's name with .ppm, in the current folder; stdout if the scene comes from stdin. A regular file is \
+written beside and renamed when it is whole; devices, pipes and links are written through."
+    )]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureOptions,
+    /// Only rows A up to, not including, B, counted from the bottom; the picture has B−A rows
+    #[arg(long, value_name = "A..B", value_parser = rows)]
+    pub(crate) rows: Option<Range<u32>>,
+    /// Which tracer: the GPU if there is one, else the CPU (auto); the GPU or an error; the CPU
+    #[arg(long, value_name = "TRACER", value_enum, default_value_t)]
+    pub(crate) backend: BackendName,
+    /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`)
+    #[arg(long, value_name = "PART", value_parser = NonEmptyStringValueParser::new())]
+    pub(crate) adapter: Option<String>,
+    /// CPU threads, if the CPU renders; all cores without
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<usize>,
+    /// The notes' listing of pixels on stderr: any of pix, hit, drgb, irgb, offset
+    #[arg(
+        long,
+        value_name = "WHAT,…",
+        value_delimiter = ',',
+        long_help = "\
+The notes' listing of pixels, to stderr after the picture is done, bottom row first: any of pix, hit, drgb, irgb, \
+offset, separated by commas. It is computed on the CPU, whatever rendered the picture. Lines are begun by pix. A pixel \
+without a hit lists pix only. drgb is the colour (1 is full brightness), irgb the bytes as they are in the picture, \
+offset the pixel's number, from the top left of the whole picture."
+    )]
+    pub(crate) debug: Vec<DebugName>,
+    /// Print a report as JSON: to stdout, or to stderr if the picture goes to stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors and what was asked for
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+impl RenderOptions {
+    /// The settings for rendering `scene`, which has its final size.
+    pub(crate) fn settings(&self, scene: &Scene, values: bool) -> Result<Settings> {
+        let height = scene.camera.pixeldim[1];
+        if let Some(rows) = &self.rows
+            && rows.end > height
+        {
+            bail!(
+                "--rows {}..{}: the picture has {height} rows, so B is at most {height} (rows count from 0 at the bottom)",
+                rows.start,
+                rows.end
+            );
+        }
+        if self.adapter.is_some() && self.backend == BackendName::Cpu {
+            bail!("--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out");
+        }
+        Ok(Settings {
+            rows: self.rows.clone(),
+            screen_tolerance: self.picture.screen_tolerance,
+            backend: self.backend.into(),
+            adapter: self.adapter.clone(),
+            threads: self.threads,
+            values,
+        })
+    }
+
+    /// What `--debug` asks for, if anything.
+    pub(crate) fn shown(&self) -> Option<Shown> {
+        let has = |name| self.debug.contains(&name);
+        (!self.debug.is_empty()).then(|| Shown {
+            pix: has(DebugName::Pix),
+            hit: has(DebugName::Hit),
+            drgb: has(DebugName::Drgb),
+            irgb: has(DebugName::Irgb),
+            offset: has(DebugName::Offset),
+        })
+    }
+}
+
+/// The tracers by their names on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum BackendName {
+    #[default]
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+impl From<BackendName> for Backend {
+    fn from(name: BackendName) -> Self {
+        match name {
+            BackendName::Auto => Self::Auto,
+            BackendName::Gpu => Self::Gpu,
+            BackendName::Cpu => Self::Cpu,
+        }
+    }
+}
+
+/// The parts of the notes' listing by their names on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DebugName {
+    Pix,
+    Hit,
+    Drgb,
+    Irgb,
+    Offset,
+}
+
+/// How many threads the CPU tracer takes when it may choose.
+pub(crate) fn cores() -> usize {
+    thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// `640x480`.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse::<u32>().ok().filter(|n| (1..=MOST_PIXELS).contains(n));
+    let sides = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    sides.ok_or_else(|| "say columns x rows, each 1 to 1000000, like 640x480".to_owned())
+}
+
+/// `0..120`.
+fn rows(text: &str) -> Result<Range<u32>, String> {
+    let bounds = text.split_once("..").and_then(|(a, b)| Some((a.parse::<u32>().ok()?, b.parse::<u32>().ok()?)));
+    match bounds {
+        Some((start, end)) if start < end => Ok(start..end),
+        Some(_) => Err("A must be less than B: A is the first row, B the row after the last".to_owned()),
+        None => Err("say the first row and the row after the last, from 0 at the bottom, like 0..120".to_owned()),
+    }
+}
+
+/// A finite number.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "say a finite number, like 0.01".to_owned())
+}
+
+/// At least one thread.
+fn threads(text: &str) -> Result<usize, String> {
+    let number = text.parse::<usize>().ok().filter(|n| (1..=MOST_THREADS).contains(n));
+    number.ok_or_else(|| format!("say a number from 1 to {MOST_THREADS}; without --threads all cores are used"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert_eq!(size("1X1000000"), Ok([1, 1_000_000]));
+        for bad in ["", "640", "640x", "x480", "0x1", "1x0", "1000001x1", "-1x1", "1x1x1", "1 x 1", "1e3x1", "4294967297x1"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn row_ranges() {
+        assert_eq!(rows("0..120"), Ok(0..120));
+        for bad in ["", "..", "1..", "..1", "5..5", "6..5", "-1..5", "0-5", "0..=5", "0..4294967296"] {
+            assert!(rows(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn tolerances_are_finite() {
+        assert_eq!(tolerance("-0.5"), Ok(-0.5));
+        for bad in ["nan", "inf", "-inf", "1e999", "", "x"] {
+            assert!(tolerance(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn threads_are_at_least_one() {
+        assert_eq!(threads("1"), Ok(1));
+        for bad in ["0", "-1", "", "5000", "1.5"] {
+            assert!(threads(bad).is_err(), "{bad}");
+        }
+    }
+}

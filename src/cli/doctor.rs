@@ -1,0 +1,143 @@
+//! `plumb doctor`: what there is to render with, which of it would be used, and what to install if there is nothing.
+
+use std::fmt::Write as _;
+
+use anyhow::Result;
+use plumb::gpu::device::{AdapterSummary, adapters};
+use plumb::render::install_hint;
+use serde_json::json;
+
+use super::{Answer, SOFTWARE, args, say};
+
+/// What `plumb doctor` takes.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Exit 1: there is none that can be
+used, and the CPU renders.")]
+pub(crate) struct Args {
+    /// Print the same as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Lists the adapters.
+pub(crate) fn run(args: &Args) -> Result<Answer> {
+    let adapters = adapters();
+    let chosen = adapters.iter().position(|adapter| adapter.problem.is_none());
+    let text = if args.json { to_json(&adapters, chosen) } else { to_text(&adapters, chosen) };
+    say::data(&text)?;
+    Ok(if chosen.is_some() { Answer::Yes } else { Answer::No })
+}
+
+fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
+    let mut text = String::new();
+    for (i, adapter) in adapters.iter().enumerate() {
+        let mark = if chosen == Some(i) { "*" } else { " " };
+        let _ = writeln!(text, "{mark} {} ({})", adapter.name, adapter.kind);
+        let mut line = |what: &str, value: String| {
+            let _ = writeln!(text, "    {what:<16}{value}");
+        };
+        line("driver", adapter.driver.clone());
+        line("interface", adapter.backend.clone());
+        line("storage buffer", format!("{} at most", bytes(adapter.max_storage_buffer)));
+        line("buffer", format!("{} at most", bytes(adapter.max_buffer)));
+        line("workgroup", format!("{} invocations at most", adapter.max_workgroup));
+        line("timestamps", yes(adapter.timestamps));
+        line("f64 in shaders", format!("{} (not needed)", yes(adapter.shader_f64)));
+        if let Some(problem) = &adapter.problem {
+            line("cannot be used", problem.clone());
+        }
+    }
+    let _ = writeln!(text, "  CPU, {}", say::count(args::cores(), "thread"));
+    let _ = writeln!(text, "\n{}", verdict(adapters, chosen));
+    text
+}
+
+/// Which one, and why.
+fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
+    let Some(adapter) = chosen.and_then(|i| adapters.get(i)) else {
+        let what = if adapters.is_empty() { "there is no GPU adapter" } else { "none of the adapters can be used" };
+        return format!("plumb renders on the CPU: {what}.\nFor a GPU: {}.", install_hint());
+    };
+    let usable = adapters.iter().filter(|adapter| adapter.problem.is_none()).count();
+    let why = match (adapters.len(), usable) {
+        (1, _) => "it is the only adapter".to_owned(),
+        (_, 1) => "it is the only adapter that can be used".to_owned(),
+        _ => format!("of {usable} it comes first in the order discrete, integrated, virtual, software"),
+    };
+    format!("plumb renders on {}: {why}.\nAnother: --adapter PART-OF-NAME, or --backend cpu.", adapter.name)
+}
+
+fn to_json(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
+    let value = json!({
+        "software": SOFTWARE,
+        "adapters": adapters,
+        "chosen": chosen,
+        "verdict": verdict(adapters, chosen),
+        "install": chosen.is_none().then(install_hint),
+        "cpu": { "threads": args::cores() },
+    });
+    format!("{value:#}\n")
+}
+
+fn yes(holds: bool) -> String {
+    if holds { "yes" } else { "no" }.to_owned()
+}
+
+/// `128 MiB`, in the largest unit that leaves no fraction; a limit that is none as such.
+fn bytes(n: u64) -> String {
+    if n == u64::MAX {
+        return "any size".to_owned();
+    }
+    let units = ["bytes", "KiB", "MiB", "GiB"];
+    let (mut n, mut unit) = (n, 0);
+    while unit + 1 < units.len() && n > 0 && n.is_multiple_of(1024) {
+        n /= 1024;
+        unit += 1;
+    }
+    format!("{n} {}", units[unit])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn adapter(name: &str, problem: Option<&str>) -> AdapterSummary {
+        AdapterSummary {
+            name: name.to_owned(),
+            kind: "software",
+            backend: "Vulkan".to_owned(),
+            driver: "driver 1".to_owned(),
+            max_storage_buffer: 1 << 27,
+            max_buffer: (1 << 31) - 1,
+            max_workgroup: 1024,
+            timestamps: true,
+            shader_f64: false,
+            problem: problem.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn limits_are_readable() {
+        assert_eq!(bytes(1 << 27), "128 MiB");
+        assert_eq!(bytes(u64::from(u32::MAX)), "4294967295 bytes");
+        assert_eq!(bytes(0), "0 bytes");
+        assert_eq!(bytes(u64::MAX), "any size");
+    }
+
+    #[test]
+    fn without_an_adapter_the_verdict_says_what_to_install() {
+        assert!(verdict(&[], None).contains(install_hint()));
+        let broken = [adapter("a", Some("it is too old"))];
+        assert!(verdict(&broken, None).contains("none of the adapters can be used"));
+        assert!(to_text(&broken, None).contains("it is too old"));
+    }
+
+    #[test]
+    fn the_adapter_that_is_used_is_marked_and_explained() {
+        let two = [adapter("a", Some("it is too old")), adapter("b", None)];
+        let text = to_text(&two, Some(1));
+        assert!(text.contains("\n* b (software)"), "{text}");
+        assert!(text.contains("plumb renders on b: it is the only adapter that can be used"), "{text}");
+    }
+}

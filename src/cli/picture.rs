@@ -1,0 +1,65 @@
+//! A picture on its way from the command line's jobs into `plumb::image`: opened early, but stdout late.
+
+use std::io;
+
+use plumb::image::{Finished, Format, Metadata, Output, OutputError, Target};
+use plumb::render::Band;
+
+/// The picture on its way out. A file is opened before anything is rendered, so that a name that cannot be written costs
+/// no time; stdout, which cannot fail to open, when there is something to write: an error before leaves it empty.
+pub(crate) struct Picture {
+    target: Target,
+    format: Format,
+    width: u32,
+    rows: u32,
+    metadata: Metadata,
+    output: Option<Output>,
+}
+
+impl Picture {
+    /// Opens what is not stdout, for `rows` rows of `width` pixels.
+    pub(crate) fn open(
+        target: &Target,
+        format: Format,
+        width: u32,
+        rows: u32,
+        metadata: Metadata,
+    ) -> Result<Self, OutputError> {
+        let mut picture = Self { target: target.clone(), format, width, rows, metadata, output: None };
+        if !target.is_stdout() {
+            picture.opened()?;
+        }
+        Ok(picture)
+    }
+
+    fn opened(&mut self) -> Result<&mut Output, OutputError> {
+        let output = match self.output.take() {
+            Some(output) => output,
+            None => {
+                Output::open(self.target.clone(), self.format, self.width, self.rows, self.metadata.clone())?
+            }
+        };
+        Ok(self.output.insert(output))
+    }
+
+    /// Writes the next rows.
+    pub(crate) fn write(&mut self, band: &Band) -> io::Result<()> {
+        self.opened().map_err(io::Error::other)?.write(band)
+    }
+
+    /// What an error of [`Picture::write`] means, when it comes back from the rendering.
+    pub(crate) fn failed(self, source: io::Error) -> anyhow::Error {
+        // One that `opened` gave comes back as it was.
+        match source.downcast::<OutputError>() {
+            Ok(error) => error.into(),
+            Err(source) => OutputError::Write { target: self.target, source }.into(),
+        }
+    }
+
+    /// Ends the picture and gives it its name.
+    pub(crate) fn finish(mut self) -> Result<Finished, OutputError> {
+        self.opened()?;
+        let Self { target, rows, output, .. } = self;
+        output.map_or(Err(OutputError::Unfinished { target, written: 0, rows }), Output::finish)
+    }
+}

@@ -1,0 +1,42 @@
+//! A bar on stderr for renderings that take a while, where somebody may be watching.
+
+use std::io::{self, IsTerminal};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Work shorter than this shows nothing.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Rows done, of all rows.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    /// When to begin to show it; None once it is shown, or if it never will be.
+    pending: Option<Instant>,
+}
+
+impl Progress {
+    /// Of so many rows; shown if it is `wanted` and stderr is a terminal.
+    pub(crate) fn new(rows: u64, wanted: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %, {eta} left") {
+            bar.set_style(style);
+        }
+        let watched = wanted && io::stderr().is_terminal();
+        Self { bar, pending: watched.then(|| Instant::now() + PATIENCE) }
+    }
+
+    /// So many rows more are done.
+    pub(crate) fn add(&mut self, rows: u64) {
+        self.bar.inc(rows);
+        if self.pending.is_some_and(|when| Instant::now() >= when) {
+            self.pending = None;
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+    }
+
+    /// Takes the bar away, whatever came of the work.
+    pub(crate) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,237 @@
+//! `plumb render`, and the filter use `plumb < scene > picture.ppm`: scene in, picture out, and a word about how it went.
+
+use std::ffi::OsStr;
+use std::io::{self, IsTerminal, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow, bail};
+use plumb::cpu::debug::list_pixels;
+use plumb::image::{Finished, Format, Metadata, Target};
+use plumb::prepare::Prepared;
+use plumb::render::{self, Backend, Report, Settings};
+use plumb::scene::{Scene, list_model};
+use serde::Serialize;
+
+use super::args::RenderOptions;
+use super::picture::Picture;
+use super::progress::Progress;
+use super::{Answer, SOFTWARE, say, source};
+
+/// What `plumb render` takes.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+EXAMPLES
+  plumb render scene.txt                           scene.ppm, in the current folder
+  plumb render scene.txt -o big.png --size 3840x2160
+  plumb render scene.txt -o values.exr             the values before they become bytes
+  plumb render scene.txt -o - | display            PPM on stdout
+  plumb render scene.txt --rows 0..100 -o low.ppm  the lowest 100 rows
+  plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt")]
+pub(crate) struct Args {
+    /// The scene file; `-` is stdin
+    scene: PathBuf,
+    #[command(flatten)]
+    options: RenderOptions,
+}
+
+/// What is rendered, and under which name.
+struct Job<'a> {
+    /// What errors and reports call the scene.
+    name: &'a str,
+    /// The scene's file, if it has one.
+    file: Option<&'a Path>,
+    scene: Scene,
+    options: &'a RenderOptions,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct JsonReport<'a> {
+    software: &'a str,
+    scene: &'a str,
+    output: String,
+    format: String,
+    bytes: u64,
+    sha256: &'a str,
+    #[serde(flatten)]
+    report: &'a Report,
+}
+
+/// Renders a scene file.
+pub(crate) fn run(args: &Args) -> Result<Answer> {
+    let name = source::name(&args.scene);
+    let scene = source::load(&args.scene)?;
+    let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
+    Job::new(&name, file, scene, &args.options).run()
+}
+
+/// Renders the scene on stdin, as the notes' program does: lists the model on stderr, writes the picture to stdout.
+pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
+    if io::stdin().is_terminal() {
+        return Ok(Answer::Nothing);
+    }
+    let Some(scene) = source::load_stdin()? else { return Ok(Answer::Nothing) };
+    let job = Job::new(source::STDIN, None, scene, options);
+    if job.talks() {
+        let mut listing = Vec::new();
+        list_model(&job.scene, &mut listing).context("cannot list the model")?;
+        say::talk(&String::from_utf8_lossy(&listing));
+    }
+    job.run()
+}
+
+impl<'a> Job<'a> {
+    fn new(name: &'a str, file: Option<&'a Path>, mut scene: Scene, options: &'a RenderOptions) -> Self {
+        options.picture.apply(&mut scene);
+        Self { name, file, scene, options }
+    }
+
+    /// Whether stderr is for talk: not if silence was asked for, nor if the report is the only thing to be there.
+    fn talks(&self) -> bool {
+        let report_on_stderr = self.options.json && self.target().is_ok_and(|target| target.is_stdout());
+        !self.options.quiet && !report_on_stderr
+    }
+
+    /// Where the picture goes.
+    fn target(&self) -> Result<Target> {
+        if let Some(output) = &self.options.output {
+            return Ok(Target::from_argument(output.as_os_str()));
+        }
+        let Some(file) = self.file else { return Ok(Target::Stdout) };
+        let Some(stem) = file.file_stem().filter(|stem| !stem.is_empty()) else {
+            bail!("{} has no name to call the picture by: give one with -o", file.display());
+        };
+        let mut name = stem.to_owned();
+        name.push(".ppm");
+        // A name such as `-.txt` must not turn into stdout.
+        Ok(Target::Path(Path::new("").join(name)))
+    }
+
+    /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
+    fn check(&self, target: &Target) -> Result<()> {
+        match target {
+            Target::Stdout => {
+                if self.options.output.is_none() && io::stdout().is_terminal() {
+                    bail!("the picture would go to the terminal: redirect it, `> picture.ppm`, or give a name with -o");
+                }
+            }
+            Target::Path(path) => {
+                if self.file.is_some_and(|scene| source::is_same_file(path, scene)) {
+                    bail!("{} is the scene itself: give the picture another name with -o", path.display());
+                }
+                if let Some(texture) = self.scene.textures.iter().find(|texture| source::is_same_file(path, &texture.path)) {
+                    bail!("{} is the scene's texture `{}`: give the picture another name", path.display(), texture.name);
+                }
+            }
+        }
+        source::check_renderable(&self.scene, self.name)
+    }
+
+    fn run(&self) -> Result<Answer> {
+        let start = Instant::now();
+        let target = self.target()?;
+        let format = target.format()?;
+        let settings = self.options.settings(&self.scene, format.wants_values())?;
+        self.check(&target)?;
+        let mut picture = Picture::open(self, &target, format, &settings)?;
+        let mut progress = Progress::new(rows.len() as u64, self.talks());
+        let rendered = render::render(&self.scene, &settings, &mut |band| {
+            picture.write(band)?;
+            progress.add(band.rows.len() as u64);
+            Ok(())
+        });
+        progress.clear();
+        let report = match rendered {
+            Ok(report) => report,
+            Err(render::Error::Emit(source)) => return Err(picture.failed(source)),
+            Err(error) => return Err(self.explain(error)),
+        };
+        let finished = picture.finish()?;
+        if let Some(fallback) = report.fallback.as_ref().filter(|_| self.talks()) {
+            say::note(fallback);
+        }
+        self.list(&settings, &report)?;
+        self.report(&target, format, &report, &finished)?;
+        if self.talks() && !self.options.json {
+            say::talk(&format!("{}\n", self.summary(&target, &report, start.elapsed())));
+        }
+        Ok(Answer::Yes)
+    }
+
+    /// What changes the bytes of a picture; no date and no path, so that the same picture is the same file.
+    fn metadata(&self, rows: &Range<u32>) -> Metadata {
+        let scene = self.file.and_then(Path::file_name).unwrap_or(OsStr::new(self.name));
+        let [width, height] = self.scene.camera.pixeldim;
+        let entry = |key: &str, text: String| (key.to_owned(), text);
+        Metadata {
+            entries: vec![
+                entry("Software", SOFTWARE.to_owned()),
+                entry("plumb:scene", scene.to_string_lossy().into_owned()),
+                entry("plumb:size", format!("{width}x{height}")),
+                entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
+                entry("plumb:screen-tolerance", self.options.picture.screen_tolerance.to_string()),
+            ],
+        }
+    }
+
+    /// The error, with what would mend it.
+    fn explain(&self, error: render::Error) -> anyhow::Error {
+        match error {
+            render::Error::Gpu(plumb::gpu::GpuError::NoAdapter) => {
+                anyhow!("{error}; {}, or leave out --backend gpu", render::install_hint())
+            }
+            error => anyhow::Error::new(error),
+        }
+    }
+
+    /// The notes' listing, if it was asked for.
+    fn list(&self, settings: &Settings, report: &Report) -> Result<()> {
+        let Some(shown) = self.options.shown() else { return Ok(()) };
+        let prepared = Prepared::new(&self.scene, settings.screen_tolerance);
+        let [start, end] = report.rows;
+        let mut stderr = io::BufWriter::new(io::stderr().lock());
+        let listed = list_pixels(&self.scene, &prepared, start..end, shown, &mut stderr)
+            // The notes' listing begins lines and ends none; what follows begins one of its own.
+            .and_then(|()| stderr.write_all(b"\n"))
+            .and_then(|()| stderr.flush());
+        listed.context("cannot list the pixels on stderr")
+    }
+
+    /// The report of `--json`.
+    fn report(&self, target: &Target, format: Format, report: &Report, finished: &Finished) -> Result<()> {
+        if !self.options.json {
+            return Ok(());
+        }
+        let json = JsonReport {
+            software: SOFTWARE,
+            scene: self.name,
+            output: target.to_string(),
+            format: format.to_string().to_lowercase(),
+            bytes: finished.bytes,
+            sha256: &finished.sha256,
+            report,
+        };
+        let text = serde_json::to_string_pretty(&json)? + "\n";
+        if target.is_stdout() {
+            say::talk(&text);
+            return Ok(());
+        }
+        say::data(&text)
+    }
+
+    /// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s`.
+    fn summary(&self, target: &Target, report: &Report, took: Duration) -> String {
+        let [start, end] = report.rows;
+        let mut size = format!("{}×{}", report.width, end - start);
+        if end - start != report.height {
+            size += &format!(" (rows {start}..{end} of {})", report.height);
+        }
+        let tracer = match (report.backend, &report.adapter) {
+            (Backend::Gpu, Some(adapter)) => format!("GPU {adapter}"),
+            _ => format!("CPU, {}", say::count(report.threads.unwrap_or(1), "thread")),
+        };
+        format!("{target}: {size}, {tracer}, {:.2} s", took.as_secs_f64())
+    }
+}

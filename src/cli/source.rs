@@ -1,0 +1,49 @@
+//! Where a scene comes from on the command line: a file, or stdin.
+
+use std::fs;
+use std::io::{self, BufRead};
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use plumb::render;
+use plumb::scene::{self, Scene};
+
+/// What errors and reports call stdin.
+pub(crate) const STDIN: &str = "<stdin>";
+
+/// Whether the argument means stdin.
+pub(crate) fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// What errors and reports call the scene.
+pub(crate) fn name(path: &Path) -> String {
+    if is_stdin(path) { STDIN.to_owned() } else { path.display().to_string() }
+}
+
+/// Loads the scene from the file, or from stdin.
+pub(crate) fn load(path: &Path) -> Result<Scene> {
+    if is_stdin(path) { Ok(scene::load_from(STDIN, io::stdin().lock(), Path::new(""))?) } else { Ok(scene::load(path)?) }
+}
+
+/// The scene on stdin, or none if nothing is piped in. Its textures are looked for from the current folder.
+pub(crate) fn load_stdin() -> Result<Option<Scene>> {
+    let mut stdin = io::stdin().lock();
+    if stdin.fill_buf().context("cannot read stdin")?.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(scene::load_from(STDIN, stdin, Path::new(""))?))
+}
+
+/// Refuses a scene that is read and checked, but not rendered yet.
+pub(crate) fn check_renderable(scene: &Scene, name: &str) -> Result<()> {
+    match render::not_yet(scene) {
+        Some(what) => Err(render::Error::NotYet(what)).with_context(|| name.to_owned()),
+        None => Ok(()),
+    }
+}
+
+/// Whether both names lead to one file that is there.
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}

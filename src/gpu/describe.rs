@@ -1,0 +1,62 @@
+//! What the GPU would get for a scene, as text: `plumb dump --stage features|buffers|wgsl`. Opens no device.
+
+use std::fmt::Write as _;
+
+use super::compose::compose;
+use super::features::FeatureSet;
+use super::pack::Packed;
+use crate::prepare::Prepared;
+use crate::render::Settings;
+use crate::scene::Scene;
+
+fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
+    let packed = Packed::new(&Prepared::new(scene, settings.screen_tolerance));
+    let features = FeatureSet::new(&packed, settings.values);
+    (packed, features)
+}
+
+/// The features, one a line.
+pub fn features(scene: &Scene, settings: &Settings) -> String {
+    let (packed, features) = packed(scene, settings);
+    let mut text = String::new();
+    for name in features.names() {
+        text.push_str(name);
+        text.push('\n');
+    }
+    for kind in &features.kinds {
+        text.push_str(&kind.name().to_lowercase());
+        text.push('\n');
+    }
+    writeln!(text, "objects tested by a ray: {} of {}", packed.tested(), packed.objects.len()).unwrap_or_default();
+    text
+}
+
+/// The packed records, one a line.
+pub fn buffers(scene: &Scene, settings: &Settings) -> String {
+    let (packed, _) = packed(scene, settings);
+    let mut text = format!("{:?}\n", packed.camera);
+    fn list<T: std::fmt::Debug>(text: &mut String, name: &str, records: &[T]) {
+        if records.is_empty() {
+            return;
+        }
+        let bytes = size_of_val(records);
+        writeln!(text, "{name}: {} records of {} bytes, {bytes} in all", records.len(), size_of::<T>())
+            .unwrap_or_default();
+        for (i, record) in records.iter().enumerate() {
+            writeln!(text, "  {i}: {record:?}").unwrap_or_default();
+        }
+    }
+    list(&mut text, "objects", &packed.objects);
+    list(&mut text, "planes", &packed.planes);
+    list(&mut text, "small_spheres", &packed.small_spheres);
+    list(&mut text, "wide_spheres", &packed.wide_spheres);
+    list(&mut text, "tiled_planes", &packed.tiled_planes);
+    list(&mut text, "pplanes", &packed.pplanes);
+    text
+}
+
+/// The composed shader.
+pub fn wgsl(scene: &Scene, settings: &Settings) -> String {
+    let (packed, features) = packed(scene, settings);
+    compose(&packed, &features)
+}

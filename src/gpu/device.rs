@@ -1,0 +1,217 @@
+//! Adapters: which there are, which one is used, and opening it.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::GpuError;
+use super::compose::WORKGROUP;
+
+/// An open device.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The logical device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What the adapter is called, with its driver.
+    pub name: String,
+    /// Whether kernels can be timed on the device.
+    pub timestamps: bool,
+    /// Seconds that loading the driver took, and opening the device.
+    pub seconds: [f64; 2],
+    trouble: Arc<Mutex<Trouble>>,
+}
+
+/// What went wrong behind our back: wgpu reports some errors by callback.
+#[derive(Debug, Default)]
+struct Trouble {
+    lost: Option<String>,
+    refused: Option<String>,
+    memory: Option<String>,
+}
+
+/// An adapter, for `plumb doctor`.
+#[derive(Debug, Clone, Serialize)]
+pub struct AdapterSummary {
+    /// Its name, as the driver gives it.
+    pub name: String,
+    /// `discrete GPU`, `integrated GPU`, `virtual GPU`, `software` or `other`.
+    pub kind: &'static str,
+    /// The graphics API: `Vulkan`, `Metal` or `Dx12`.
+    pub backend: String,
+    /// The driver and its version.
+    pub driver: String,
+    /// Largest storage buffer that can be bound, in bytes.
+    pub max_storage_buffer: u64,
+    /// Largest buffer, in bytes.
+    pub max_buffer: u64,
+    /// Largest workgroup, in invocations.
+    pub max_workgroup: u32,
+    /// Whether kernels can be timed on the device.
+    pub timestamps: bool,
+    /// Whether shaders can compute in f64 (plumb does not need it).
+    pub shader_f64: bool,
+    /// Why plumb cannot use it, if so.
+    pub problem: Option<String>,
+}
+
+/// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software.
+pub fn adapters() -> Vec<AdapterSummary> {
+    enumerate().1.iter().map(summary).collect()
+}
+
+/// Opens the first adapter, or the first whose name contains `wanted` in any case of letters.
+pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
+    let start = Instant::now();
+    // The instance has to outlive the adapters only.
+    let (_instance, adapters) = enumerate();
+    let adapter = choose(&adapters, wanted)?;
+    let instance_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let info = adapter.get_info();
+    let name = describe(&info);
+    let timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some("plumb"),
+        required_features: if timestamps { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() },
+        required_limits: adapter.limits(),
+        ..Default::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        .map_err(|error| GpuError::Device { adapter: name.clone(), reason: error.to_string() })?;
+    let trouble = Arc::new(Mutex::new(Trouble::default()));
+    watch(&device, &trouble);
+    let device_seconds = start.elapsed().as_secs_f64();
+    Ok(Gpu { device, queue, name, timestamps, seconds: [instance_seconds, device_seconds], trouble })
+}
+
+/// Notes what wgpu reports by callback, where it would panic otherwise.
+fn watch(device: &wgpu::Device, trouble: &Arc<Mutex<Trouble>>) {
+    let errors = Arc::clone(trouble);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        let mut trouble = errors.lock().unwrap_or_else(PoisonError::into_inner);
+        match error {
+            wgpu::Error::OutOfMemory { source } => trouble.memory.get_or_insert(source.to_string()),
+            other => trouble.refused.get_or_insert(other.to_string()),
+        };
+    }));
+    let lost = Arc::clone(trouble);
+    device.set_device_lost_callback(move |reason, message| {
+        // Dropping the device counts as destroying it, and is no trouble.
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            lost.lock().unwrap_or_else(PoisonError::into_inner).lost.get_or_insert(message);
+        }
+    });
+}
+
+impl Gpu {
+    /// What went wrong since the device was opened, if anything.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner);
+        let adapter = self.name.clone();
+        if let Some(reason) = trouble.lost.clone() {
+            return Err(GpuError::Lost { adapter, reason });
+        }
+        if let Some(reason) = trouble.memory.clone() {
+            return Err(GpuError::OutOfMemory { adapter, reason });
+        }
+        if let Some(reason) = trouble.refused.clone() {
+            return Err(GpuError::Refused { adapter, reason });
+        }
+        Ok(())
+    }
+}
+
+fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        flags: wgpu::InstanceFlags::empty().with_env(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    // Stable: among equals the system's own order stays.
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    (instance, adapters)
+}
+
+fn rank(kind: wgpu::DeviceType) -> u32 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        wgpu::DeviceType::Other => 4,
+    }
+}
+
+fn choose<'a>(adapters: &'a [wgpu::Adapter], wanted: Option<&str>) -> Result<&'a wgpu::Adapter, GpuError> {
+    if adapters.is_empty() {
+        return Err(GpuError::NoAdapter);
+    }
+    if let Some(wanted) = wanted {
+        let part = wanted.to_lowercase();
+        let named = |adapter: &&wgpu::Adapter| describe(&adapter.get_info()).to_lowercase().contains(&part);
+        return adapters.iter().find(named).ok_or_else(|| GpuError::NoSuchAdapter {
+            wanted: wanted.to_owned(),
+            found: adapters.iter().map(|adapter| describe(&adapter.get_info())).collect(),
+        });
+    }
+    let usable = adapters.iter().find(|adapter| problem(adapter).is_none());
+    match usable {
+        Some(adapter) => Ok(adapter),
+        None => Err(GpuError::Device {
+            adapter: describe(&adapters[0].get_info()),
+            reason: problem(&adapters[0]).unwrap_or_default(),
+        }),
+    }
+}
+
+/// Name and driver, for people.
+fn describe(info: &wgpu::AdapterInfo) -> String {
+    let driver = driver(info);
+    if driver.is_empty() { info.name.clone() } else { format!("{} [{driver}]", info.name) }
+}
+
+fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info).trim().to_owned()
+}
+
+/// Why plumb cannot use the adapter, if so.
+fn problem(adapter: &wgpu::Adapter) -> Option<String> {
+    let limits = adapter.limits();
+    let flags = adapter.get_downlevel_capabilities().flags;
+    if !flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+        return Some("it has no compute shaders".into());
+    }
+    let needed = WORKGROUP * WORKGROUP;
+    if limits.max_compute_invocations_per_workgroup < needed {
+        return Some(format!("its workgroups hold fewer than {needed} invocations"));
+    }
+    None
+}
+
+fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
+    let info = adapter.get_info();
+    let limits = adapter.limits();
+    let features = adapter.features();
+    AdapterSummary {
+        name: info.name.clone(),
+        kind: match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+            wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+            wgpu::DeviceType::VirtualGpu => "virtual GPU",
+            wgpu::DeviceType::Cpu => "software",
+            wgpu::DeviceType::Other => "other",
+        },
+        backend: info.backend.to_string(),
+        driver: driver(&info),
+        max_storage_buffer: limits.max_storage_buffer_binding_size,
+        max_buffer: limits.max_buffer_size,
+        max_workgroup: limits.max_compute_invocations_per_workgroup,
+        timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+        shader_f64: features.contains(wgpu::Features::SHADER_F64),
+        problem: problem(adapter),
+    }
+}

@@ -1,0 +1,81 @@
+//! The GPU: the only code that knows wgpu.
+//!
+//! In the order of the flow: [`pack`] rounds the prepared scene to flat f32 records, [`features`] says which of them there
+//! are, [`compose`] writes the WGSL for exactly those, [`device`] finds an adapter and opens it, [`pipeline`] compiles and
+//! binds, [`bands`] runs the frame in rectangles bounded in memory and time. [`describe`] prints each stage.
+
+pub mod bands;
+pub mod compose;
+pub mod describe;
+pub mod device;
+pub mod features;
+pub mod pack;
+pub mod pipeline;
+
+/// What can go wrong on the way to or on the GPU.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter at all.
+    #[error("no GPU adapter found")]
+    NoAdapter,
+    /// None whose name holds what `--adapter` asks for.
+    #[error("no GPU adapter's name contains `{wanted}`; there {}: {}", if .found.len() == 1 { "is" } else { "are" }, .found.join(", "))]
+    NoSuchAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// The adapters that there are.
+        found: Vec<String>,
+    },
+    /// The adapter would not open.
+    #[error("{adapter} cannot be opened: {reason}")]
+    Device {
+        /// Its name.
+        adapter: String,
+        /// What wgpu says.
+        reason: String,
+    },
+    /// A buffer that the scene needs is larger than the adapter allows.
+    #[error("the scene's {what} take {needed} bytes in one buffer, and {adapter} allows {allowed}")]
+    TooLarge {
+        /// Which records.
+        what: &'static str,
+        /// How large they are.
+        needed: u64,
+        /// How large they may be.
+        allowed: u64,
+        /// Name of the adapter.
+        adapter: String,
+    },
+    /// More objects than the loops of the shader are sure to reach.
+    #[error("the scene has {found} objects outside the tree of spheres, and a shader's loops are sure to reach {allowed} only")]
+    TooMany {
+        /// Objects that a loop would ask.
+        found: usize,
+        /// Objects that it may.
+        allowed: usize,
+    },
+    /// The device ran out of memory.
+    #[error("{adapter} is out of memory: {reason}")]
+    OutOfMemory {
+        /// Name of the adapter.
+        adapter: String,
+        /// What wgpu says.
+        reason: String,
+    },
+    /// wgpu or the driver refused something of ours.
+    #[error("{adapter} refused the rendering: {reason}")]
+    Refused {
+        /// Name of the adapter.
+        adapter: String,
+        /// What wgpu says.
+        reason: String,
+    },
+    /// The device was lost while rendering.
+    #[error("{adapter} was lost while rendering ({reason}); a driver reset, most likely")]
+    Lost {
+        /// Name of the adapter.
+        adapter: String,
+        /// What wgpu says.
+        reason: String,
+    },
+}

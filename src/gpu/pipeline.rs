@@ -1,0 +1,108 @@
+//! A composed shader compiled, and the packed scene in buffers bound to it.
+
+use std::time::Instant;
+
+use bytemuck::Pod;
+use wgpu::util::DeviceExt as _;
+
+use super::GpuError;
+use super::device::Gpu;
+use super::features::FeatureSet;
+use super::pack::Packed;
+
+/// A shader ready to run on a scene.
+#[derive(Debug)]
+pub struct Pipeline {
+    /// The compiled shader.
+    pub pipeline: wgpu::ComputePipeline,
+    /// Bytes that the shader writes for a pixel.
+    pub pixel_bytes: u64,
+    /// Seconds for compiling, and for packing and uploading.
+    pub seconds: [f64; 2],
+    buffers: Vec<(u32, wgpu::Buffer)>,
+}
+
+impl Pipeline {
+    /// Compiles `wgsl`, composed for `packed` with `features`, and uploads the scene.
+    pub fn new(gpu: &Gpu, packed: &Packed, features: &FeatureSet, wgsl: &str) -> Result<Self, GpuError> {
+        let start = Instant::now();
+        let buffers = upload(gpu, packed, features)?;
+        let upload_seconds = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("plumb"),
+            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+        });
+        gpu.check()?;
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("plumb"),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        gpu.check()?;
+        let compile_seconds = start.elapsed().as_secs_f64();
+        Ok(Self {
+            pipeline,
+            pixel_bytes: if features.values { 16 } else { 4 },
+            seconds: [compile_seconds, upload_seconds],
+            buffers,
+        })
+    }
+
+    /// Binds the scene, a job and a buffer for its pixels.
+    pub fn bind(&self, gpu: &Gpu, job: &wgpu::Buffer, pixels: &wgpu::Buffer) -> wgpu::BindGroup {
+        let own = [(0, job), (1, pixels)];
+        let entries: Vec<_> = own
+            .into_iter()
+            .chain(self.buffers.iter().map(|(binding, buffer)| (*binding, buffer)))
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("plumb"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        })
+    }
+}
+
+/// The buffers that `shaders/bindings.wgsl` declares for these features.
+fn upload(gpu: &Gpu, packed: &Packed, features: &FeatureSet) -> Result<Vec<(u32, wgpu::Buffer)>, GpuError> {
+    let names = features.names();
+    let mut buffers = Vec::new();
+    let mut add = |name: &str, binding: u32, what: &'static str, bytes: &[u8]| -> Result<(), GpuError> {
+        if names.contains(name) {
+            buffers.push((binding, buffer(gpu, what, bytes)?));
+        }
+        Ok(())
+    };
+    add("objects", 2, "objects", bytes(&packed.objects))?;
+    add("plane_loop", 3, "planes", bytes(&packed.planes))?;
+    add("small_sphere_buffer", 4, "spheres", bytes(&packed.small_spheres))?;
+    add("wide_sphere_buffer", 5, "wide spheres", bytes(&packed.wide_spheres))?;
+    add("bvh", 8, "tree nodes", bytes(&packed.bvh))?;
+    add("tiled", 6, "tiled planes", bytes(&packed.tiled_planes))?;
+    add("pplane", 7, "procedural planes", bytes(&packed.pplanes))?;
+    gpu.check()?;
+    Ok(buffers)
+}
+
+fn bytes<T: Pod>(records: &[T]) -> &[u8] {
+    bytemuck::cast_slice(records)
+}
+
+fn buffer(gpu: &Gpu, what: &'static str, contents: &[u8]) -> Result<wgpu::Buffer, GpuError> {
+    let limits = gpu.device.limits();
+    let allowed = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let needed = contents.len() as u64;
+    if needed > allowed {
+        return Err(GpuError::TooLarge { what, needed, allowed, adapter: gpu.name.clone() });
+    }
+    Ok(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(what),
+        contents,
+        usage: wgpu::BufferUsages::STORAGE,
+    }))
+}

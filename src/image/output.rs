@@ -1,0 +1,320 @@
+//! The front of writing pictures: one [`Output`] is one picture on its way into one target.
+//!
+//! Above the encoders and `sink`: counts the rows, hashes the bytes, and lets only whole pictures be finished.
+
+use std::io::{self, Write};
+
+use sha2::{Digest, Sha256};
+
+use super::exr::{self, Exr};
+use super::png::Png;
+use super::sink::Sink;
+use super::target::Target;
+use super::{Format, OutputError, ppm};
+use crate::render::Band;
+
+/// The key of the picture's hash among the metadata.
+pub const HASH_KEY: &str = "plumb:sha256";
+
+/// Width and height that a PNG can have at most.
+const PNG_MOST: u32 = i32::MAX as u32;
+
+/// Bytes of one text at most: far more than any of ours, far less than a PNG's chunk may hold.
+const TEXT_MOST: usize = 1 << 20;
+
+/// Attributes of EXR with a meaning and a type of their own; a text by such a name would make the file unreadable.
+const EXR_NAMES: [&str; 16] = [
+    "channels",
+    "chunkCount",
+    "compression",
+    "dataWindow",
+    "displayWindow",
+    "lineOrder",
+    "maxSamplesPerPixel",
+    "name",
+    "pixelAspectRatio",
+    "preview",
+    "screenWindowCenter",
+    "screenWindowWidth",
+    "tiles",
+    "type",
+    "version",
+    "view",
+];
+
+/// What a picture's file tells of how it was made: text chunks in PNG, attributes in EXR, nothing in PPM, which has no
+/// place for it. The picture's hash is added by itself, as [`HASH_KEY`].
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Metadata {
+    /// Keys and their texts. A key is 1 to 79 characters of printable ASCII without blanks at its ends or doubled, and
+    /// comes once; a text is anything up to 1 MiB without the character NUL.
+    pub entries: Vec<(String, String)>,
+}
+
+impl Metadata {
+    /// Checks what PNG and EXR ask of keys and texts, for every format alike: what can be told in one can be told in all.
+    fn check(&self) -> Result<(), OutputError> {
+        for (index, (key, text)) in self.entries.iter().enumerate() {
+            let problem = if key.is_empty() || key.len() > 79 {
+                "a key has 1 to 79 characters"
+            } else if !key.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
+                "a key is printable ASCII"
+            } else if key.trim() != key || key.contains("  ") {
+                "a key has no blanks at its ends and no two in a row"
+            } else if key == HASH_KEY || self.entries[..index].iter().any(|(known, _)| known == key)
+            {
+                "this key is taken"
+            } else if EXR_NAMES.contains(&key.as_str()) {
+                "this key means something else in EXR"
+            } else if text.len() > TEXT_MOST {
+                "a text has at most 1 MiB"
+            } else if text.contains('\0') {
+                "a text has no character NUL"
+            } else {
+                continue;
+            };
+            return Err(OutputError::Metadata {
+                key: key.clone(),
+                problem,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// A picture that was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finished {
+    /// The picture's hash, 64 lowercase hexadecimal digits: the SHA-256 of its PPM file.
+    pub sha256: String,
+    /// Length of the file that was written, in bytes.
+    pub bytes: u64,
+}
+
+/// One picture on its way. [`finish`](Output::finish) gives it its name; dropped without, nothing remains.
+pub struct Output {
+    target: Target,
+    to: Counted,
+    encoder: Encoder,
+    hash: Sha256,
+    width: u32,
+    rows: u32,
+    metadata: Metadata,
+    written: u32,
+    /// The row above which the next band must end, counted from the bottom; any before the first.
+    next: Option<u32>,
+    failed: bool,
+}
+
+enum Encoder {
+    Ppm,
+    Png(Box<Png>),
+    Exr(Exr),
+}
+
+/// Counts what goes on to the sink.
+struct Counted {
+    sink: Sink,
+    bytes: u64,
+}
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.sink.write(bytes)?;
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.sink.flush()
+    }
+}
+
+impl Output {
+    /// Opens a target for a picture of `width` columns, of which `rows` rows will be written (a part of a picture is a
+    /// picture of that many rows). Comes before rendering: whatever can be known to fail fails here.
+    ///
+    /// # Errors
+    /// Any [`OutputError`] but [`Unfinished`](OutputError::Unfinished): what cannot be opened or created, a size that
+    /// the format cannot hold (no pixels at all; an EXR above [`exr::MAX_PIXELS`]), metadata that cannot be told.
+    pub fn open(
+        target: Target,
+        format: Format,
+        width: u32,
+        rows: u32,
+        metadata: Metadata,
+    ) -> Result<Self, OutputError> {
+        metadata.check()?;
+        let size = |problem: String| OutputError::Size {
+            width,
+            rows,
+            format,
+            problem,
+        };
+        if width == 0 || rows == 0 {
+            return Err(size("it has no pixels".into()));
+        }
+        // In memory first, so that the file is created only when nothing but the system can say no.
+        let mut encoder = match format {
+            Format::Ppm => Encoder::Ppm,
+            Format::Png if width.max(rows) > PNG_MOST => {
+                return Err(size(format!("the most is {PNG_MOST} each way")));
+            }
+            Format::Png => Encoder::Png(Box::new(
+                Png::new(width, rows, &metadata.entries).map_err(|source| OutputError::Write {
+                    target: target.clone(),
+                    source,
+                })?,
+            )),
+            Format::Exr if u64::from(width) * u64::from(rows) > exr::MAX_PIXELS => {
+                return Err(size(format!(
+                    "it is kept in memory, {} million pixels at most; PNG and PPM have no such limit",
+                    exr::MAX_PIXELS / 1_000_000
+                )));
+            }
+            Format::Exr => Encoder::Exr(
+                Exr::new(width, rows)
+                    .map_err(|_| size("there is not enough memory to keep it".into()))?,
+            ),
+        };
+        let mut to = Counted {
+            sink: Sink::open(&target)?,
+            bytes: 0,
+        };
+        let header = ppm::header(width, rows);
+        if let Encoder::Ppm = &mut encoder {
+            to.write_all(header.as_bytes())
+                .map_err(|source| OutputError::Write {
+                    target: target.clone(),
+                    source,
+                })?;
+        }
+        let hash = Sha256::new_with_prefix(&header);
+        Ok(Self {
+            target,
+            to,
+            encoder,
+            hash,
+            width,
+            rows,
+            metadata,
+            written: 0,
+            next: None,
+            failed: false,
+        })
+    }
+
+    /// Writes the next rows below those that were written.
+    ///
+    /// # Errors
+    /// What the system says; [`io::ErrorKind::BrokenPipe`] if the reader of a pipe or of stdout went away.
+    /// [`io::ErrorKind::InvalidInput`] for a band that does not fit: not the next rows, more than were announced, not
+    /// three bytes a pixel, without values although the format is EXR. After any error the picture cannot be finished.
+    pub fn write(&mut self, band: &Band) -> io::Result<()> {
+        let written = self
+            .check(band)
+            .and_then(|rows| self.encode(band).map(|()| rows));
+        match written {
+            Ok(rows) => {
+                self.written += rows;
+                self.next = Some(band.rows.start);
+                Ok(())
+            }
+            Err(error) => {
+                self.failed = true;
+                Err(error)
+            }
+        }
+    }
+
+    /// The number of rows of a band that comes next.
+    fn check(&self, band: &Band) -> io::Result<u32> {
+        let misfit = |problem: &str| {
+            let message = format!(
+                "rows {} to {} do not fit: {problem}",
+                band.rows.start, band.rows.end
+            );
+            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+        };
+        let Some(rows) = band.rows.end.checked_sub(band.rows.start) else {
+            return misfit("they end before they start");
+        };
+        if self.failed {
+            return misfit("an earlier band failed");
+        }
+        if rows > self.rows - self.written {
+            return misfit("there are more than were announced");
+        }
+        if self.next.is_some_and(|next| next != band.rows.end) {
+            return misfit("they are not the ones right below the last");
+        }
+        let pixels = u64::from(self.width) * u64::from(rows);
+        if band.rgb.len() as u64 != 3 * pixels {
+            return misfit("there are not three bytes a pixel");
+        }
+        match (&self.encoder, &band.values) {
+            (Encoder::Exr(_), None) => misfit("EXR needs the values before quantising"),
+            (Encoder::Exr(_), Some(values)) if values.len() as u64 != pixels => {
+                misfit("there is not one value a pixel")
+            }
+            _ => Ok(rows),
+        }
+    }
+
+    fn encode(&mut self, band: &Band) -> io::Result<()> {
+        self.hash.update(&band.rgb);
+        match &mut self.encoder {
+            Encoder::Ppm => self.to.write_all(&band.rgb),
+            Encoder::Png(png) => png.write(&band.rgb, &mut self.to),
+            Encoder::Exr(exr) => {
+                exr.write(band.values.as_deref().unwrap_or_default());
+                Ok(())
+            }
+        }
+    }
+
+    /// Ends the picture and gives it its name. What was under the name before is there until now.
+    ///
+    /// # Errors
+    /// [`OutputError::Unfinished`] if rows are missing or a write failed; [`OutputError::Write`] if the rest could not
+    /// be written or named. Nothing remains then.
+    pub fn finish(self) -> Result<Finished, OutputError> {
+        let Self {
+            target,
+            mut to,
+            encoder,
+            hash,
+            rows,
+            mut metadata,
+            written,
+            failed,
+            ..
+        } = self;
+        if failed || written != rows {
+            return Err(OutputError::Unfinished {
+                target,
+                written,
+                rows,
+            });
+        }
+        let sha256: String = hash
+            .finalize()
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect();
+        let ended = match encoder {
+            Encoder::Ppm => Ok(()),
+            Encoder::Png(png) => png.finish(HASH_KEY, &sha256, &mut to),
+            Encoder::Exr(exr) => {
+                metadata.entries.push((HASH_KEY.to_owned(), sha256.clone()));
+                exr.finish(&metadata.entries, &mut to.sink)
+                    .map(|bytes| to.bytes = bytes)
+            }
+        };
+        let bytes = to.bytes;
+        match ended.and_then(|()| to.sink.commit()) {
+            Ok(()) => Ok(Finished { sha256, bytes }),
+            Err(source) => Err(OutputError::Write { target, source }),
+        }
+    }
+}

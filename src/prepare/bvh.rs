@@ -1,0 +1,176 @@
+//! A bounding volume hierarchy over many spheres, for both tracers.
+//!
+//! `obvhs` builds the tree from f32 boxes. A box is padded outward before that, by more than a slab test in f32 can err,
+//! so that the tree only ever says "may be hit": which sphere is hit, and where, is decided by the spheres alone.
+
+use std::time::Duration;
+
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::{Boundable, BvhBuildParams};
+
+use super::Sphere;
+use crate::real::Real;
+
+/// The tree. The spheres it holds stand in its order: a leaf's are `first..first + count`.
+#[derive(Debug, Clone)]
+pub struct Bvh {
+    /// Node 0 is the root.
+    pub nodes: Vec<Node>,
+    /// Most nodes that wait while one is looked at.
+    pub depth: usize,
+    /// How many spheres, the first of the scene's, the tree holds.
+    pub len: usize,
+}
+
+/// A box, from the viewpoint in units of 2^scale, and what is in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Its least corner.
+    pub min: [f32; 3],
+    /// Its greatest corner.
+    pub max: [f32; 3],
+    /// A leaf's first sphere, or the first of an inner node's two children, which are neighbours.
+    pub first: u32,
+    /// How many spheres a leaf holds; 0 for an inner node.
+    pub count: u32,
+}
+
+/// From this many spheres on a tree is quicker than asking every one (docs/BENCH.md).
+pub const WORTHWHILE: usize = 48;
+
+/// A box is widened by this share of its corners' coordinates. A slab test has three roundings of at most 2.5 ulp
+/// (2⁻²¹·⁷ of the coordinate each); 2⁻¹⁹ is more than the three together.
+const PAD: f64 = 1.0 / 524_288.0;
+
+/// Coordinates beyond this would overflow an f32 when areas are compared; such spheres stay outside the tree.
+const REACH: f64 = 1e17;
+
+struct Boxed(Aabb);
+
+impl Boundable for Boxed {
+    fn aabb(&self) -> Aabb {
+        self.0
+    }
+}
+
+/// The padded box of a sphere, if f32 can hold it.
+fn padded<R: Real>(sphere: &Sphere<R>) -> Option<Boxed> {
+    let center = (sphere.toward * sphere.distance).approx();
+    // ρ² and |C| are a few ulp off in f64, which the padding covers many times over.
+    let radius = sphere.rho2.approx().sqrt() * sphere.distance.approx();
+    let corner = |side: f64| {
+        let at = |c: f64| {
+            let bound = c + side * radius;
+            (bound + side * (PAD * (bound.abs() + radius) + 1e-30)) as f32
+        };
+        Vec3A::new(at(center.x), at(center.y), at(center.z))
+    };
+    (center.abs().max_element() + radius < REACH).then(|| Boxed(Aabb::new(corner(-1.0), corner(1.0))))
+}
+
+/// Builds the tree over the spheres for which `eligible` holds, and puts those first, in the tree's order; the others
+/// follow in their own. None, and nothing moved, if they are too few.
+pub fn build<R: Real>(spheres: &mut Vec<Sphere<R>>, eligible: impl Fn(&Sphere<R>) -> bool) -> Option<Bvh> {
+    let boxes: Vec<Option<Boxed>> =
+        spheres.iter().map(|s| if eligible(s) { padded(s) } else { None }).collect();
+    let inside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_some()).collect();
+    if inside.len() < WORTHWHILE {
+        return None;
+    }
+    let outside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_none()).collect();
+    let boxes: Vec<Boxed> = boxes.into_iter().flatten().collect();
+    let tree = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Duration::default());
+    let nodes: Vec<Node> = tree
+        .nodes
+        .iter()
+        .map(|node| Node {
+            min: node.aabb.min.to_array(),
+            max: node.aabb.max.to_array(),
+            first: node.first_index,
+            count: node.prim_count,
+        })
+        .collect();
+    let order = tree.primitive_indices.iter().map(|&i| inside[i as usize]).chain(outside);
+    let sorted: Vec<Sphere<R>> = order.map(|i| spheres[i]).collect();
+    *spheres = sorted;
+    let depth = depth(&nodes);
+    Some(Bvh { nodes, depth, len: inside.len() })
+}
+
+/// The depth of the tree: one node waits on each level of the way down.
+fn depth(nodes: &[Node]) -> usize {
+    let mut deepest = 0;
+    let mut stack = vec![(0_u32, 1)];
+    while let Some((index, depth)) = stack.pop() {
+        let node = &nodes[index as usize];
+        deepest = deepest.max(depth);
+        if node.count == 0 {
+            stack.extend([(node.first, depth + 1), (node.first + 1, depth + 1)]);
+        }
+    }
+    deepest
+}
+
+impl Node {
+    /// Where the ray from the viewpoint along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
+    /// components.
+    pub fn enters(&self, inverse: [f64; 3]) -> Option<f64> {
+        let mut near = 0.0_f64;
+        let mut far = f64::INFINITY;
+        for axis in 0..3 {
+            let a = f64::from(self.min[axis]) * inverse[axis];
+            let b = f64::from(self.max[axis]) * inverse[axis];
+            near = near.max(a.min(b));
+            far = far.min(a.max(b));
+        }
+        (near <= far).then_some(near)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::V3;
+
+    fn sphere(i: usize, x: f64, y: f64, z: f64, r: f64) -> Sphere<f64> {
+        let d = (x * x + y * y + z * z).sqrt();
+        Sphere {
+            object: i,
+            toward: V3::new(x / d, y / d, z / d),
+            distance: d,
+            rho2: r * r / (d * d),
+            kappa2: 1.0 - r * r / (d * d),
+            gain: d / (d * d - r * r),
+            seen: None,
+        }
+    }
+
+    #[test]
+    fn every_sphere_is_in_one_leaf_and_in_its_box() {
+        let mut spheres: Vec<_> =
+            (0..500).map(|i| sphere(i, (i % 10) as f64, (i / 10 % 10) as f64, -5.0 - (i / 100) as f64, 0.3)).collect();
+        let tree = build(&mut spheres, |s| s.object % 5 != 0).unwrap();
+        assert_eq!(tree.len, 400);
+        assert!(spheres[..400].iter().all(|s| s.object % 5 != 0));
+        let mut seen = vec![0; 400];
+        for node in tree.nodes.iter().filter(|n| n.count > 0) {
+            for i in node.first..node.first + node.count {
+                seen[i as usize] += 1;
+                let s = &spheres[i as usize];
+                let c = s.toward * s.distance;
+                for (axis, at) in [c.x, c.y, c.z].into_iter().enumerate() {
+                    assert!(f64::from(node.min[axis]) < at - 0.3 && at + 0.3 < f64::from(node.max[axis]));
+                }
+            }
+        }
+        assert_eq!(seen, vec![1; 400]);
+    }
+
+    #[test]
+    fn few_spheres_get_no_tree() {
+        let mut spheres: Vec<_> = (0..WORTHWHILE - 1).map(|i| sphere(i, i as f64, 0.0, -5.0, 0.3)).collect();
+        assert!(build(&mut spheres, |_| true).is_none());
+    }
+}

@@ -1,0 +1,65 @@
+//! Exact rational arithmetic for the host: facts of the scene are decided here, not by rounding.
+
+use dashu_base::Sign;
+use dashu_int::IBig;
+use glam::DVec3;
+
+pub use dashu_ratio::Relaxed as Ratio;
+
+/// The rational number that a finite f64 is.
+pub fn ratio(value: f64) -> Ratio {
+    // The scene's numbers are finite by its limits, and every finite f64 is rational.
+    Ratio::try_from(value).unwrap_or(Ratio::ZERO)
+}
+
+/// The three rationals that a vector is.
+pub fn ratio3(v: DVec3) -> [Ratio; 3] {
+    [ratio(v.x), ratio(v.y), ratio(v.z)]
+}
+
+/// The inner product.
+pub fn dot(a: &[Ratio; 3], b: &[Ratio; 3]) -> Ratio {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+/// a − b.
+pub fn sub(a: &[Ratio; 3], b: &[Ratio; 3]) -> [Ratio; 3] {
+    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
+}
+
+/// Whether the number is 0.
+pub fn is_zero(value: &Ratio) -> bool {
+    *value == Ratio::ZERO
+}
+
+/// Whether the number is > 0.
+pub fn is_positive(value: &Ratio) -> bool {
+    *value > Ratio::ZERO
+}
+
+/// The absolute value.
+pub fn abs(value: Ratio) -> Ratio {
+    if is_positive(&value) { value } else { -value }
+}
+
+/// The parity (0 or 1) of an integer.
+pub fn parity(n: &IBig) -> u32 {
+    let (_, words) = n.as_sign_words();
+    // Two's complement keeps the parity of the magnitude.
+    (words.first().copied().unwrap_or(0) & 1) as u32
+}
+
+/// 2^exponent.
+pub fn power_of_two(exponent: i32) -> Ratio {
+    let power = dashu_int::UBig::ONE << exponent.unsigned_abs() as usize;
+    if exponent >= 0 {
+        Ratio::from(IBig::from_parts(Sign::Positive, power))
+    } else {
+        Ratio::from_parts(IBig::ONE, power)
+    }
+}
+
+/// 2^exponent as an f64, exactly; |exponent| ≤ 1022.
+pub fn two_to(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
+}

@@ -1,0 +1,177 @@
+//! Checks of whole entities: that nothing is missing, and that attributes agree; for the parser with places in the
+//! text, for the builder without. The last checks before an entity joins the [`Scene`](super::Scene).
+
+use std::ops::Range;
+
+use super::draft::Draft;
+use super::lex::{self, Kind as Lexeme};
+use super::parse::{Block, Parser};
+use super::table::{self, Entity, Kind, Take};
+use crate::diagnostic::Diagnostic;
+
+impl Parser<'_> {
+    pub(super) fn report_open_block(&mut self, entity: &Entity, title: &Range<usize>) {
+        let token = self.window[0];
+        let (span, message, label) = if token.kind == Lexeme::End {
+            let message = format!("the file ends inside the block of this `{}`", entity.name);
+            (self.last_end..self.last_end, message, "expected `}`")
+        } else {
+            let message = format!(
+                "missing `}}` at the end of the block of this `{}`",
+                entity.name
+            );
+            (token.span(), message, "expected `}` before it")
+        };
+        let error = Diagnostic::new(span, message).label(label);
+        self.errors.report(
+            error
+                .also(title.clone(), "its block starts here")
+                .help("add `}`"),
+        );
+    }
+
+    pub(super) fn check_complete(&mut self, block: &Block, title: &Range<usize>) {
+        let kind = block.entity.name;
+        if block.entity.kind == Kind::Material {
+            if block.given.iter().all(Option::is_none) && block.stranger.is_none() {
+                let all: Vec<_> = block
+                    .entity
+                    .rows()
+                    .map(|row| format!("`{}`", row.name))
+                    .collect();
+                let error =
+                    Diagnostic::new(title.clone(), format!("this `{kind}` has no attributes"));
+                self.errors
+                    .report(error.help(format!("give at least one of {}", all.join(", "))));
+            }
+            return;
+        }
+        let rows = block.entity.rows().zip(&block.given);
+        let missing: Vec<_> = rows
+            .filter(|(row, given)| row.required && given.is_none())
+            .map(|(row, _)| format!("`{}`", row.name))
+            .collect();
+        if missing.is_empty() {
+            return;
+        }
+        let missing = missing.join(", ");
+        match block.stranger {
+            // Most likely the stranger is what is missing: one mistake, one message.
+            Some(stranger) => {
+                if let Some(error) = self.errors.at(stranger) {
+                    error
+                        .secondary
+                        .push((title.clone(), format!("this `{kind}` lacks {missing}")));
+                }
+            }
+            None => {
+                let error =
+                    Diagnostic::new(title.clone(), format!("this `{kind}` lacks {missing}"));
+                self.errors.report(error);
+            }
+        }
+    }
+
+    pub(super) fn check_relation(&mut self, block: &Block) {
+        let Some(relation) = &block.entity.relation else {
+            return;
+        };
+        let place = |name: &str| {
+            let (index, _) = block.entity.row(name.as_bytes())?;
+            block.given[index].clone().filter(|_| block.good[index])
+        };
+        if let (Some(span), Some(other)) = (place(relation.attribute), place(relation.other))
+            && (relation.broken)(&block.draft)
+        {
+            let error = Diagnostic::new(
+                span,
+                format!("`{}` {}", relation.attribute, relation.message),
+            );
+            self.errors
+                .report(error.also(other, format!("`{}` is given here", relation.other)));
+        }
+    }
+
+    pub(super) fn check_first_camera(&mut self, title: &Range<usize>) {
+        match &self.camera {
+            Some(first) => {
+                let error = Diagnostic::new(title.clone(), "a second camera")
+                    .label("a scene has exactly one");
+                self.errors.report(
+                    error
+                        .also(first.clone(), "the first camera is here")
+                        .help("remove one of them"),
+                );
+            }
+            None => self.camera = Some(title.clone()),
+        }
+    }
+}
+
+/// What is wrong with an entity that was built in code, by the rows of its type. `materials` and `textures` are how
+/// many there are to refer to.
+pub(super) fn faults(
+    kind: Kind,
+    draft: &mut Draft,
+    materials: usize,
+    textures: usize,
+) -> Vec<String> {
+    let entity = table::of(kind);
+    let mut faults = Vec::new();
+    if !is_name(&draft.name) {
+        faults.push(String::from(
+            "a name is not empty, and holds no white space, braces or `#`",
+        ));
+    }
+    for row in entity.rows() {
+        let (count, kind) = match row.take {
+            Take::Numbers(_, field) | Take::Integers(_, field) | Take::Spread(field) => {
+                if row.name == "xdir" && draft.xdir.is_none() {
+                    continue;
+                }
+                let values = field(draft);
+                if values.iter().any(|value| !value.is_finite()) {
+                    faults.push(format!("`{}` must be finite", row.name));
+                } else if !row.limit.broken(values).is_empty() {
+                    faults.push(format!(
+                        "`{}` must be {}, and is {values:?}",
+                        row.name,
+                        row.limit.wording()
+                    ));
+                }
+                continue;
+            }
+            Take::Material(index) => (*index(draft) < materials, "material"),
+            Take::Texture(index) => (*index(draft) < textures, "texture"),
+            Take::Picture => continue,
+        };
+        if !count {
+            faults.push(format!("`{}` is a {kind} of another builder", row.name));
+        }
+    }
+    if let Some(relation) = &entity.relation
+        && faults.is_empty()
+        && (relation.broken)(draft)
+    {
+        faults.push(format!("`{}` {}", relation.attribute, relation.message));
+    }
+    faults
+}
+/// As in a scene from a file, zero is never negative.
+pub(super) fn positive_zeros(kind: Kind, mut draft: Draft) -> Draft {
+    for row in table::of(kind).rows() {
+        if row.name == "xdir" && draft.xdir.is_none() {
+            continue;
+        }
+        if let Take::Numbers(_, field) | Take::Spread(field) = row.take {
+            field(&mut draft).iter_mut().for_each(|value| *value += 0.0);
+        }
+    }
+    draft
+}
+
+pub(super) fn is_name(name: &str) -> bool {
+    let mut lexer = lex::Lexer::new(name.as_bytes());
+    let token = lexer.token();
+    token.is_word() && token.text == name.as_bytes() && !name.contains('\0')
+}

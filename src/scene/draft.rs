@@ -1,0 +1,334 @@
+//! An entity while its attributes come in, and the scene while its entities come in.
+//!
+//! The rows of the [table](super::table) say which field of a [`Draft`] an attribute goes to; an [`Assembly`] turns a
+//! finished draft into the data model. The listing goes the other way: from the model to a draft, to print row by row.
+//! So this is the last step of text → lex → parse → [`Scene`].
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::model::{
+    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
+    TextureMode,
+};
+use super::table::{Class, Kind};
+
+/// The fields of all entities; an entity uses those that its rows name.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Draft {
+    /// The name of the entity.
+    pub(super) name: String,
+    /// Index of the material.
+    pub(super) material: usize,
+    /// Index of the other material of tiles.
+    pub(super) altmaterial: usize,
+    /// Index of the texture.
+    pub(super) texture: usize,
+    /// The picture of a texture.
+    pub(super) picture: Option<Picture>,
+    pub(super) pixeldim: [f64; 2],
+    pub(super) worlddim: [f64; 2],
+    pub(super) viewpoint: [f64; 3],
+    pub(super) ambient: [f64; 3],
+    pub(super) diffuse: [f64; 3],
+    pub(super) specular: [f64; 3],
+    pub(super) shininess: [f64; 1],
+    pub(super) transparency: [f64; 1],
+    pub(super) normal: [f64; 3],
+    pub(super) point: [f64; 3],
+    pub(super) center: [f64; 3],
+    pub(super) radius: [f64; 1],
+    pub(super) dimension: [f64; 2],
+    pub(super) xdir: Option<[f64; 3]>,
+    pub(super) shader: [f64; 1],
+    pub(super) mode: [f64; 1],
+    pub(super) location: [f64; 3],
+    pub(super) emissivity: [f64; 3],
+    pub(super) theta: [f64; 1],
+}
+
+/// A picture that was read for a texture.
+#[derive(Debug, Clone)]
+pub(super) struct Picture {
+    /// The file name as the scene gives it.
+    pub(super) filename: String,
+    /// Where it was read from.
+    pub(super) path: PathBuf,
+    /// Its texels.
+    pub(super) texels: Arc<Texels>,
+}
+
+/// A scene while its entities come in.
+#[derive(Debug, Default)]
+pub(super) struct Assembly {
+    /// The first camera.
+    pub(super) camera: Option<Camera>,
+    /// Materials so far.
+    pub(super) materials: Vec<Material>,
+    /// Objects so far.
+    pub(super) objects: Vec<Object>,
+    /// Lights so far.
+    pub(super) lights: Vec<Light>,
+    /// Textures so far.
+    pub(super) textures: Vec<Texture>,
+}
+
+impl Assembly {
+    /// Adds an entity. That it keeps every limit was checked before, or the scene is not going to be used.
+    pub(super) fn add(&mut self, kind: Kind, draft: Draft) {
+        match kind {
+            Kind::Camera => {
+                self.camera.get_or_insert(Camera {
+                    name: draft.name,
+                    pixeldim: draft.pixeldim.map(|pixels| pixels as u32),
+                    worlddim: draft.worlddim.into(),
+                    viewpoint: draft.viewpoint.into(),
+                });
+            }
+            Kind::Material => self.materials.push(Material {
+                name: draft.name,
+                ambient: draft.ambient.into(),
+                diffuse: draft.diffuse.into(),
+                specular: draft.specular.into(),
+                shininess: draft.shininess[0],
+                transparency: draft.transparency[0],
+            }),
+            Kind::Texture => {
+                // A texture without a picture is an error that was reported; its place in the list stays taken.
+                let (filename, path, texels) = match draft.picture {
+                    Some(picture) => (picture.filename, picture.path, picture.texels),
+                    None => (
+                        String::new(),
+                        PathBuf::new(),
+                        Arc::new(Texels {
+                            width: 0,
+                            height: 0,
+                            rgb: Vec::new(),
+                        }),
+                    ),
+                };
+                self.textures.push(Texture {
+                    name: draft.name,
+                    filename,
+                    path,
+                    texels,
+                });
+            }
+            Kind::Light { spot } => {
+                let cone = Cone {
+                    point: draft.point.into(),
+                    theta: draft.theta[0],
+                };
+                self.lights.push(Light {
+                    name: draft.name,
+                    location: draft.location.into(),
+                    emissivity: draft.emissivity.into(),
+                    cone: spot.then_some(cone),
+                });
+            }
+            Kind::Object(class) => {
+                let (shape, surface) = draft.shape(class);
+                self.objects.push(Object {
+                    name: draft.name,
+                    material: draft.material,
+                    shape,
+                    surface,
+                });
+            }
+        }
+    }
+
+    /// The scene, once there is a camera.
+    pub(super) fn finish(self) -> Option<Scene> {
+        let Assembly {
+            camera,
+            mut materials,
+            mut objects,
+            lights,
+            textures,
+        } = self;
+        materials.shrink_to_fit();
+        objects.shrink_to_fit();
+        camera.map(|camera| Scene {
+            camera,
+            materials,
+            objects,
+            lights,
+            textures,
+        })
+    }
+}
+
+impl Draft {
+    fn shape(&self, class: Class) -> (Shape, Surface) {
+        let sphere = Shape::Sphere {
+            center: self.center.into(),
+            radius: self.radius[0],
+        };
+        let plane = |extent| Shape::Plane {
+            normal: self.normal.into(),
+            point: self.point.into(),
+            extent,
+        };
+        let extent = Extent {
+            xdir: self.xdir.unwrap_or_default().into(),
+            dimensions: self.dimension.into(),
+        };
+        let procedural = Surface::Procedural {
+            shader: self.shader[0] as u32,
+        };
+        match class {
+            Class::Plane => (plane(None), Surface::Plain),
+            Class::ProceduralPlane => (plane(None), procedural),
+            Class::Finite => (plane(Some(extent)), Surface::Plain),
+            Class::Sphere => (sphere, Surface::Plain),
+            Class::ProceduralSphere => (sphere, procedural),
+            Class::Tiled => {
+                let (dimension, xdir) = (DVec2::from(self.dimension), self.xdir.map(DVec3::from));
+                (
+                    plane(None),
+                    Surface::Tiled {
+                        dimension,
+                        altmaterial: self.altmaterial,
+                        xdir,
+                    },
+                )
+            }
+            Class::Textured => {
+                let mode = if self.mode[0] == 0.0 {
+                    TextureMode::Fit
+                } else {
+                    TextureMode::Tile
+                };
+                (
+                    plane(Some(extent)),
+                    Surface::Textured {
+                        texture: self.texture,
+                        mode,
+                    },
+                )
+            }
+        }
+    }
+
+    /// A camera, to list or to check.
+    pub(super) fn of_camera(camera: &Camera) -> Self {
+        Self {
+            name: camera.name.clone(),
+            pixeldim: camera.pixeldim.map(f64::from),
+            worlddim: camera.worlddim.to_array(),
+            viewpoint: camera.viewpoint.to_array(),
+            ..Self::default()
+        }
+    }
+
+    /// A material, to list or to check.
+    pub(super) fn of_material(material: &Material) -> Self {
+        Self {
+            name: material.name.clone(),
+            ambient: material.ambient.to_array(),
+            diffuse: material.diffuse.to_array(),
+            specular: material.specular.to_array(),
+            shininess: [material.shininess],
+            transparency: [material.transparency],
+            ..Self::default()
+        }
+    }
+
+    /// A texture, to list or to check.
+    pub(super) fn of_texture(texture: &Texture) -> Self {
+        let Texture {
+            name,
+            filename,
+            path,
+            texels,
+        } = texture.clone();
+        Self {
+            name,
+            picture: Some(Picture {
+                filename,
+                path,
+                texels,
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// A light, to list or to check, and its kind.
+    pub(super) fn of_light(light: &Light) -> (Kind, Self) {
+        let mut draft = Self {
+            name: light.name.clone(),
+            location: light.location.to_array(),
+            emissivity: light.emissivity.to_array(),
+            ..Self::default()
+        };
+        if let Some(cone) = light.cone {
+            draft.point = cone.point.to_array();
+            draft.theta = [cone.theta];
+        }
+        (
+            Kind::Light {
+                spot: light.cone.is_some(),
+            },
+            draft,
+        )
+    }
+
+    /// An object, to list or to check, and its class.
+    pub(super) fn of_object(object: &Object) -> (Kind, Self) {
+        let mut draft = Self {
+            name: object.name.clone(),
+            material: object.material,
+            ..Self::default()
+        };
+        let (mut class, procedural) = match object.shape {
+            Shape::Sphere { center, radius } => {
+                (draft.center, draft.radius) = (center.to_array(), [radius]);
+                (Class::Sphere, Class::ProceduralSphere)
+            }
+            Shape::Plane {
+                normal,
+                point,
+                extent,
+            } => {
+                (draft.normal, draft.point) = (normal.to_array(), point.to_array());
+                if let Some(extent) = extent {
+                    draft.xdir = Some(extent.xdir.to_array());
+                    draft.dimension = extent.dimensions.to_array();
+                }
+                (
+                    if extent.is_some() {
+                        Class::Finite
+                    } else {
+                        Class::Plane
+                    },
+                    Class::ProceduralPlane,
+                )
+            }
+        };
+        match object.surface {
+            Surface::Plain => {}
+            Surface::Procedural { shader } => {
+                draft.shader = [f64::from(shader)];
+                class = procedural;
+            }
+            Surface::Tiled {
+                dimension,
+                altmaterial,
+                xdir,
+            } => {
+                (draft.dimension, draft.altmaterial) = (dimension.to_array(), altmaterial);
+                draft.xdir = xdir.map(|xdir| xdir.to_array());
+                class = Class::Tiled;
+            }
+            Surface::Textured { texture, mode } => {
+                draft.texture = texture;
+                draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
+                class = Class::Textured;
+            }
+        }
+        (Kind::Object(class), draft)
+    }
+}

@@ -1,0 +1,147 @@
+//! A file or a stream to the bytes of a scene, within bounds: the step before text → lex → parse → [`Scene`].
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use super::model::Scene;
+use super::names::nearest;
+use super::parse::parse;
+use crate::diagnostic::Diagnostics;
+
+/// The most bytes that a scene may have.
+pub const MAX_FILE: u64 = 256 << 20;
+
+/// The most names in a folder that are searched for the file that was meant.
+const MAX_ENTRIES: usize = 1_000;
+
+/// Why a scene could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// Its file could not be read.
+    #[error("{}: {}{}", path.display(), reason(source), hint.as_deref().unwrap_or_default())]
+    Io {
+        /// The file, or the name of the stream.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+        /// What may have been meant, in parentheses after a space.
+        hint: Option<String>,
+    },
+    /// It is larger than [`MAX_FILE`].
+    #[error("{}: too large for a scene: more than {} MiB", path.display(), MAX_FILE >> 20)]
+    TooLarge {
+        /// The file, or the name of the stream.
+        path: PathBuf,
+    },
+    /// It is no scene, or one with mistakes.
+    #[error(transparent)]
+    Scene(#[from] Diagnostics),
+}
+
+/// Loads a scene from a file. Textures are relative to the folder of the file.
+///
+/// # Errors
+/// When the file cannot be read, is too large, or is not a scene without mistakes.
+pub fn load(path: &Path) -> Result<Scene, LoadError> {
+    let fail = |source: io::Error| {
+        let hint = if source.kind() == io::ErrorKind::NotFound {
+            hint(path)
+        } else {
+            None
+        };
+        LoadError::Io {
+            path: path.to_owned(),
+            source,
+            hint,
+        }
+    };
+    let file = File::open(path).map_err(fail)?;
+    let metadata = file.metadata().map_err(fail)?;
+    if metadata.is_dir() {
+        return Err(fail(io::ErrorKind::IsADirectory.into()));
+    }
+    let too_large = || LoadError::TooLarge {
+        path: path.to_owned(),
+    };
+    if metadata.len() > MAX_FILE {
+        return Err(too_large());
+    }
+    let bytes = read(file, metadata.len())
+        .map_err(fail)?
+        .ok_or_else(too_large)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok(parse(&path.to_string_lossy(), &bytes, folder)?)
+}
+
+/// Loads a scene from a stream, which diagnostics call `name` (as `<stdin>`). Textures are relative to `folder`.
+///
+/// # Errors
+/// When the stream fails, is too long, or is not a scene without mistakes.
+pub fn load_from(name: &str, input: impl Read, folder: &Path) -> Result<Scene, LoadError> {
+    let path = || PathBuf::from(name);
+    let bytes = read(input, 0).map_err(|source| LoadError::Io {
+        path: path(),
+        source,
+        hint: None,
+    })?;
+    let bytes = bytes.ok_or_else(|| LoadError::TooLarge { path: path() })?;
+    Ok(parse(name, &bytes, folder)?)
+}
+
+/// Reads everything, or nothing where there is more than a scene may have. Memory grows with what arrives.
+fn read(input: impl Read, expected: u64) -> io::Result<Option<Vec<u8>>> {
+    // One byte more than expected, so that the end is found without growing.
+    let mut bytes = Vec::with_capacity(expected.min(MAX_FILE) as usize + 1);
+    input.take(MAX_FILE + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= MAX_FILE).then_some(bytes))
+}
+
+/// Why, in words that are the same on every system where the reason is a common one.
+fn reason(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::NotFound => String::from("there is no such file"),
+        io::ErrorKind::PermissionDenied => String::from("permission denied"),
+        io::ErrorKind::IsADirectory => String::from("is a directory, not a scene"),
+        _ => source.to_string(),
+    }
+}
+
+/// The file that was perhaps meant by one that is not there.
+fn hint(path: &Path) -> Option<String> {
+    let mut candidates = Vec::new();
+    if path.is_relative() {
+        candidates.push(Path::new("scenes").join(path));
+    }
+    candidates.push(PathBuf::from(format!("{}.txt", path.display())));
+    if path.is_relative() {
+        candidates.push(PathBuf::from(format!("scenes/{}.txt", path.display())));
+    }
+    let found = candidates
+        .into_iter()
+        .find(|candidate| candidate.is_file())
+        .or_else(|| neighbour(path))?;
+    Some(format!(" (did you mean {}?)", found.display()))
+}
+
+/// The file in the same folder whose name is nearest.
+fn neighbour(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?;
+    let parent = path.parent()?;
+    let folder = if parent.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        parent
+    };
+    let entries = folder
+        .read_dir()
+        .ok()?
+        .take(MAX_ENTRIES)
+        .filter_map(Result::ok);
+    let files: Vec<String> = entries
+        .filter(|entry| entry.path().is_file())
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .collect();
+    let meant = nearest(name.as_bytes(), files.iter().map(String::as_bytes))?;
+    Some(parent.join(std::str::from_utf8(meant).ok()?))
+}

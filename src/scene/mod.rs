@@ -1,0 +1,34 @@
+//! The scene language: from a file, a stream or code to a [`Scene`] that keeps every limit, and back to a listing.
+//!
+//! ```text
+//! file ─ load ─ bytes ─ encoding, lex ─ parse, values (by the rows of table), check ─ draft ─► Scene ─ listing ─► text
+//!                                       build (a scene built in code) ────────────────┘
+//! ```
+
+mod build;
+mod check;
+mod draft;
+mod encoding;
+mod errors;
+mod lex;
+mod limit;
+mod listing;
+mod load;
+pub mod model;
+mod names;
+mod number;
+mod parse;
+mod recover;
+pub mod table;
+mod texture;
+mod values;
+
+pub use build::{BuildError, BuildErrors, MaterialId, SceneBuilder, TextureId};
+pub use listing::list_model;
+pub use load::{LoadError, MAX_FILE, load, load_from};
+pub use model::{
+    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
+    TextureMode,
+};
+pub use parse::parse;
+pub use table::{MAX_PIXELDIM, PPLANE_SHADERS, PSPHERE_SHADERS};

@@ -1,0 +1,238 @@
+//! Tokens to numbers, the way C's `%lf` and `%d` take a whole token; and what is decided exactly about numbers.
+//!
+//! Used by the parser (text → lex → parse → [`Scene`](super::Scene)) for each value of an attribute. Every number is
+//! the f64 nearest to its text, ties to even, decimal or hexadecimal; zero is never negative.
+
+/// Why a token is no number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NumberError {
+    /// Not a number at all.
+    Malformed,
+    /// `inf` or `nan`, in any of C's spellings.
+    NotFinite,
+    /// Beyond the largest f64.
+    TooLarge,
+}
+
+/// More digits than this never decide a rounding (767 suffice for f64): the rest matters only as "more than zero".
+const SIGNIFICANT: usize = 800;
+
+/// Reads a token as a finite f64.
+///
+/// # Errors
+/// When the token is not as a whole a number, or not finite.
+pub(super) fn parse_number(token: &[u8]) -> Result<f64, NumberError> {
+    let (negative, digits) = split_sign(token);
+    let magnitude = match digits {
+        [b'0', b'x' | b'X', hexadecimal @ ..] => parse_hexadecimal(hexadecimal)?,
+        _ if is_not_finite(digits) => return Err(NumberError::NotFinite),
+        _ => parse_decimal(digits)?,
+    };
+    if magnitude.is_infinite() {
+        return Err(NumberError::TooLarge);
+    }
+    // Adding 0 turns -0 into 0.
+    Ok(if negative { -magnitude } else { magnitude } + 0.0)
+}
+
+/// Reads a token as a whole number; beyond i64 it is the nearest i64.
+///
+/// # Errors
+/// [`NumberError::Malformed`] when the token is not an optional sign and decimal digits.
+pub(super) fn parse_integer(token: &[u8]) -> Result<i64, NumberError> {
+    let (negative, digits) = split_sign(token);
+    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
+        return Err(NumberError::Malformed);
+    }
+    let shift = |value: i64, digit: &u8| {
+        value
+            .saturating_mul(10)
+            .saturating_add(i64::from(digit - b'0'))
+    };
+    let magnitude = digits.iter().fold(0, shift);
+    Ok(if negative { -magnitude } else { magnitude })
+}
+
+/// Would somebody who wrote this token have meant a number?
+pub(super) fn looks_numeric(token: &[u8]) -> bool {
+    let (_, digits) = split_sign(token);
+    match digits {
+        [b'0'..=b'9', ..] | [b'.' | b',', b'0'..=b'9', ..] => true,
+        [] => true,
+        _ => is_not_finite(digits) || digits.len() < token.len(),
+    }
+}
+
+fn split_sign(token: &[u8]) -> (bool, &[u8]) {
+    match token {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] => (false, digits),
+        digits => (false, digits),
+    }
+}
+
+/// C's spellings of infinity and of what is not a number; `nan(…)` may carry a payload.
+fn is_not_finite(digits: &[u8]) -> bool {
+    let head = |name: &[u8]| {
+        digits
+            .get(..name.len())
+            .is_some_and(|head| head.eq_ignore_ascii_case(name))
+    };
+    let whole = |name: &[u8]| digits.len() == name.len() && head(name);
+    whole(b"inf")
+        || whole(b"infinity")
+        || whole(b"nan")
+        || (head(b"nan(") && digits.ends_with(b")"))
+}
+
+/// Splits `123.456` (either side may be empty, not both) from what follows.
+fn split_digits(text: &[u8], is_digit: fn(&u8) -> bool) -> Option<(&[u8], &[u8], &[u8])> {
+    let length = text
+        .iter()
+        .position(|byte| !is_digit(byte))
+        .unwrap_or(text.len());
+    let (whole, rest) = text.split_at(length);
+    let (fraction, rest) = match rest {
+        [b'.', rest @ ..] => rest.split_at(
+            rest.iter()
+                .position(|byte| !is_digit(byte))
+                .unwrap_or(rest.len()),
+        ),
+        _ => (&rest[..0], rest),
+    };
+    (!whole.is_empty() || !fraction.is_empty()).then_some((whole, fraction, rest))
+}
+
+/// Reads `e12`, `p-3` or nothing (0) to the end of the token.
+fn parse_exponent(text: &[u8], letter: u8) -> Option<i64> {
+    match text {
+        [] => Some(0),
+        [first, rest @ ..] if first.eq_ignore_ascii_case(&letter) => parse_integer(rest).ok(),
+        _ => None,
+    }
+}
+
+fn parse_decimal(text: &[u8]) -> Result<f64, NumberError> {
+    let (whole, fraction, rest) =
+        split_digits(text, u8::is_ascii_digit).ok_or(NumberError::Malformed)?;
+    let exponent = parse_exponent(rest, b'e').ok_or(NumberError::Malformed)?;
+    let standard = |text: &[u8]| {
+        std::str::from_utf8(text)
+            .ok()
+            .and_then(|text| text.parse().ok())
+    };
+    if text.len() <= SIGNIFICANT && exponent.abs() < 10_000 {
+        return standard(text).ok_or(NumberError::Malformed);
+    }
+    // The standard library saturates exponents somewhere, and a token may be any number of megabytes; so here the
+    // digits are cut to those that count, and the exponent is computed.
+    let mut digits = whole
+        .iter()
+        .chain(fraction)
+        .skip_while(|digit| **digit == b'0');
+    let leading = whole.len() + fraction.len() - digits.clone().count();
+    let mut short = vec![b'.'];
+    short.extend(digits.by_ref().take(SIGNIFICANT));
+    if short.len() == 1 {
+        return Ok(0.0);
+    }
+    short.push(if digits.any(|digit| *digit != b'0') {
+        b'1'
+    } else {
+        b'0'
+    });
+    let point = exponent
+        .saturating_add(whole.len() as i64 - leading as i64)
+        .clamp(-5_000, 5_000);
+    short.extend_from_slice(format!("e{point}").as_bytes());
+    standard(&short).ok_or(NumberError::Malformed)
+}
+
+/// Reads what follows `0x`.
+fn parse_hexadecimal(text: &[u8]) -> Result<f64, NumberError> {
+    let (whole, fraction, rest) =
+        split_digits(text, u8::is_ascii_hexdigit).ok_or(NumberError::Malformed)?;
+    let exponent = parse_exponent(rest, b'p').ok_or(NumberError::Malformed)?;
+    // The value is (mantissa + a bit below, if sticky) * 2^scale.
+    let mut mantissa = 0_u64;
+    let mut sticky = false;
+    let mut scale = exponent.saturating_sub(4 * fraction.len() as i64);
+    for byte in whole.iter().chain(fraction) {
+        let digit = u64::from((*byte as char).to_digit(16).unwrap_or(0));
+        if mantissa >> 60 == 0 {
+            mantissa = mantissa << 4 | digit;
+        } else {
+            sticky |= digit != 0;
+            scale = scale.saturating_add(4);
+        }
+    }
+    Ok(round(mantissa, sticky, scale))
+}
+
+/// The f64 nearest to `mantissa * 2^scale` (a little more if `sticky`), ties to even.
+fn round(mantissa: u64, sticky: bool, scale: i64) -> f64 {
+    if mantissa == 0 {
+        return 0.0;
+    }
+    // Normalise: the value is 1.xxx * 2^top with the 1 at bit 63.
+    let zeros = i64::from(mantissa.leading_zeros());
+    let mantissa = mantissa << zeros;
+    let top = scale.saturating_sub(zeros).saturating_add(63);
+    if top > 1023 {
+        return f64::INFINITY;
+    }
+    // 53 bits are kept, fewer where the result is subnormal; `kept` is at least 0 with the value at least half of the
+    // least subnormal.
+    let kept = 53.min(top + 1075);
+    if kept < 0 {
+        return 0.0;
+    }
+    let dropped = 64 - kept as u32;
+    let wide = u128::from(mantissa);
+    let integer = (wide >> dropped) as u64;
+    let rest = wide & ((1 << dropped) - 1);
+    let half = 1_u128 << (dropped - 1);
+    let up = rest > half || (rest == half && (sticky || integer & 1 == 1));
+    // In the bits of an f64 a carry out of the fraction is a step of the exponent, up to infinity.
+    let base = if kept == 53 {
+        ((top + 1022) as u64) << 52
+    } else {
+        0
+    };
+    f64::from_bits(base + integer + u64::from(up))
+}
+
+/// Are two vectors of exact f64 parallel, or is one of them zero? Nothing is rounded.
+pub(super) fn parallel(a: &[f64], b: &[f64]) -> bool {
+    let zero = |i: usize, j: usize| product(a[i], b[j]) == product(a[j], b[i]);
+    zero(0, 1) && zero(1, 2) && zero(2, 0)
+}
+
+/// An exact product of two finite f64 as (negative, odd mantissa, exponent of 2); zero is (false, 0, 0).
+fn product(a: f64, b: f64) -> (bool, u128, i32) {
+    let ((a_negative, a_mantissa, a_exponent), (b_negative, b_mantissa, b_exponent)) =
+        (parts(a), parts(b));
+    let mantissa = u128::from(a_mantissa) * u128::from(b_mantissa);
+    if mantissa == 0 {
+        return (false, 0, 0);
+    }
+    let twos = mantissa.trailing_zeros();
+    (
+        a_negative != b_negative,
+        mantissa >> twos,
+        a_exponent + b_exponent + twos as i32,
+    )
+}
+
+/// A finite f64 as (negative, mantissa, exponent of 2).
+fn parts(value: f64) -> (bool, u64, i32) {
+    let bits = value.to_bits();
+    let fraction = bits & ((1 << 52) - 1);
+    let exponent = (bits >> 52 & 0x7FF) as i32;
+    let mantissa = if exponent == 0 {
+        fraction
+    } else {
+        fraction | 1 << 52
+    };
+    (value.is_sign_negative(), mantissa, exponent.max(1) - 1075)
+}

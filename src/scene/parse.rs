@@ -1,0 +1,322 @@
+//! Tokens to a [`Scene`]: entities and their blocks. What is inside a block is read in [`values`](super::values), what
+//! is not understood is skipped in [`recover`](super::recover), and a whole entity is checked in [`check`](super::check).
+//!
+//! Every mistake of a file is reported in one run, and one mistake once: what was not understood is skipped up to
+//! where an entity or an attribute begins again, a missing brace is seen by what follows it, and what depends on
+//! something misunderstood is not complained about.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::draft::{Assembly, Draft};
+use super::encoding;
+use super::errors::Errors;
+use super::lex::{Kind as Lexeme, Lexer, Token};
+use super::model::Scene;
+use super::names::Names;
+use super::number::looks_numeric;
+use super::table::{self, Entity, Kind, MAX_ROWS};
+use super::texture::Pictures;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+
+/// Reads a scene from its text.
+///
+/// `name` is what diagnostics call the text (a path, or `<stdin>`); the file names of textures start at `folder`.
+///
+/// # Errors
+/// Everything that is wrong with the scene, in the order of the text.
+pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<Scene, Diagnostics> {
+    if let Some(error) = encoding::not_a_scene(bytes) {
+        return Err(Diagnostics::new(name, bytes, vec![error], 1));
+    }
+    let mut parser = Parser::new(bytes, folder);
+    let mut is_text = true;
+    if let Some(error) = encoding::not_utf8(bytes) {
+        parser.errors.report(error);
+        // Bytes that do not even begin like a scene get no further complaints.
+        is_text = table::find(parser.window[0].text).is_some();
+    }
+    if is_text {
+        parser.file();
+        parser.end_of_file();
+    }
+    let Parser {
+        errors, assembly, ..
+    } = parser;
+    let complete = errors.is_empty();
+    let (list, total) = errors.into_parts();
+    match assembly.finish() {
+        Some(scene) if complete => Ok(scene),
+        _ => Err(Diagnostics::new(name, bytes, list, total)),
+    }
+}
+
+/// The parser: three tokens in view, and what was read so far.
+pub(super) struct Parser<'t> {
+    pub(super) text: &'t [u8],
+    lexer: Lexer<'t>,
+    /// The next three tokens.
+    pub(super) window: [Token<'t>; 3],
+    /// The end of the last token that was read.
+    pub(super) last_end: usize,
+    pub(super) errors: Errors,
+    assembly: Assembly,
+    pub(super) materials: Names<'t>,
+    pub(super) textures: Names<'t>,
+    /// Where the first camera is, or something that was meant to be one.
+    pub(super) camera: Option<Range<usize>>,
+    /// Pictures read so far, and the folder that their names start from.
+    pub(super) pictures: Pictures,
+    pub(super) folder: &'t Path,
+}
+
+/// An entity while its block is read.
+pub(super) struct Block {
+    pub(super) entity: &'static Entity,
+    pub(super) draft: Draft,
+    /// For each row where it was given.
+    pub(super) given: [Option<Range<usize>>; MAX_ROWS],
+    /// For each row: was it given, and is it right?
+    pub(super) good: [bool; MAX_ROWS],
+    /// The first complaint about an attribute that resembles none.
+    pub(super) stranger: Option<usize>,
+}
+
+impl<'t> Parser<'t> {
+    fn new(text: &'t [u8], folder: &'t Path) -> Self {
+        let mut lexer = Lexer::new(text);
+        let window = [lexer.token(), lexer.token(), lexer.token()];
+        Self {
+            text,
+            lexer,
+            window,
+            last_end: 0,
+            errors: Errors::default(),
+            assembly: Assembly::default(),
+            materials: Names::new("material"),
+            textures: Names::new("texture"),
+            camera: None,
+            pictures: Pictures::default(),
+            folder,
+        }
+    }
+
+    /// Takes the next token.
+    pub(super) fn bump(&mut self) -> Token<'t> {
+        let token = self.window[0];
+        self.window = [self.window[1], self.window[2], self.lexer.token()];
+        self.last_end = token.end();
+        token
+    }
+
+    /// Does an entity start here? `inside` is the entity whose block this is in: a word may be its attribute.
+    pub(super) fn starts_entity(&self, inside: Option<&Entity>) -> bool {
+        let [first, second, third] = &self.window;
+        if !first.is_word() || looks_numeric(first.text) {
+            return false;
+        }
+        let named = second.is_word() && third.kind == Lexeme::Open;
+        match table::find(first.text) {
+            Some(entity) => {
+                let headless =
+                    second.is_word() && third.is_word() && entity.row(third.text).is_some();
+                named || headless || second.kind == Lexeme::Open
+            }
+            None => {
+                let is_attribute = inside.is_some_and(|entity| entity.row(first.text).is_some());
+                named && !is_attribute && !looks_numeric(second.text)
+            }
+        }
+    }
+
+    fn file(&mut self) {
+        while !self.errors.are_too_many() {
+            let token = self.window[0];
+            match token.kind {
+                Lexeme::End => return,
+                Lexeme::Word => self.entity(),
+                Lexeme::Close => {
+                    self.bump();
+                    let error =
+                        Diagnostic::new(token.span(), "`}` closes nothing: no block is open here");
+                    self.errors.report(
+                        error.help("remove it, or see whether a block before it ends too early"),
+                    );
+                }
+                Lexeme::Open => {
+                    self.bump();
+                    let error = Diagnostic::new(token.span(), "`{` opens a block of no entity");
+                    self.errors
+                        .report(error.help("an entity is written `type name { attributes }`"));
+                    self.skip_block();
+                }
+            }
+        }
+    }
+
+    fn entity(&mut self) {
+        let head = self.bump();
+        match table::find(head.text) {
+            Some(entity) => self.known_entity(entity, head),
+            None => self.unknown_entity(head),
+        }
+    }
+
+    fn known_entity(&mut self, entity: &'static Entity, head: Token<'t>) {
+        let [first, second, third] = self.window;
+        let is_row = |token: Token<'_>| token.is_word() && entity.row(token.text).is_some();
+        let wrong = |token: Token<'t>, message: String| {
+            Diagnostic::new(token.span(), message)
+                .help("an entity is written `type name { attributes }`")
+        };
+        let kind = entity.name;
+        let mut name = Some(first);
+        if first.kind == Lexeme::Open {
+            self.errors.report(
+                wrong(first, format!("this `{kind}` has no name"))
+                    .label("expected a name before it"),
+            );
+            name = None;
+        } else if first.is_word() && second.kind == Lexeme::Open {
+            self.bump();
+        } else if is_row(first) && second.is_word() && (looks_numeric(second.text) || is_row(third))
+        {
+            let error = wrong(first, format!("this `{kind}` has no name and no `{{`"));
+            self.errors
+                .report(error.label("expected a name and `{` before it"));
+            return self.block(entity, head, None);
+        } else if first.is_word() && is_row(second) {
+            let error = wrong(
+                second,
+                format!("missing `{{` after `{kind}` {}", first.quoted()),
+            );
+            self.errors.report(error.label("expected `{` before it"));
+            self.bump();
+            return self.block(entity, head, name);
+        } else if first.is_word()
+            && second.is_word()
+            && third.kind == Lexeme::Open
+            && !self.follows_entity()
+        {
+            let error = Diagnostic::new(second.span(), "a name is one word")
+                .label("expected `{`, found another word");
+            let glued = [first.text, b"_", second.text].concat();
+            self.errors
+                .report(error.help(format!("perhaps {}", crate::diagnostic::quote(&glued))));
+            self.excuse(first);
+            self.excuse(second);
+            self.bump();
+            self.bump();
+        } else {
+            return self.headless(entity, head);
+        }
+        self.bump();
+        self.block(entity, head, name);
+    }
+
+    /// Does an entity start after the next token?
+    fn follows_entity(&self) -> bool {
+        let [_, second, third] = &self.window;
+        table::find(second.text).is_some() && third.is_word()
+    }
+
+    /// Is the next token a `}` that is followed by an attribute that the block lacks?
+    fn closes_early(&self, block: &Block) -> bool {
+        let [_, key, value] = &self.window;
+        let lacks = block
+            .entity
+            .row(key.text)
+            .is_some_and(|(index, _)| block.given[index].is_none());
+        let starts_entity = table::find(key.text).is_some();
+        key.is_word() && value.is_word() && lacks && !starts_entity
+    }
+
+    /// Reads a block behind its `{`.
+    fn block(&mut self, entity: &'static Entity, head: Token<'t>, name: Option<Token<'t>>) {
+        let text = name.map_or_else(String::new, |name| {
+            String::from_utf8_lossy(name.text).into_owned()
+        });
+        let title = head.start..name.map_or(head.end(), |name| name.end());
+        let draft = Draft {
+            name: text,
+            ..Draft::default()
+        };
+        let mut block = Block {
+            entity,
+            draft,
+            given: [const { None }; MAX_ROWS],
+            good: [false; MAX_ROWS],
+            stranger: None,
+        };
+        let mut extra = 0;
+        let closed = loop {
+            let token = self.window[0];
+            match token.kind {
+                _ if self.errors.are_too_many() => return,
+                Lexeme::End => break false,
+                Lexeme::Close if self.closes_early(&block) => {
+                    self.bump();
+                    let message =
+                        format!("`}}` ends the block of this `{}` too early", entity.name);
+                    self.errors
+                        .report(Diagnostic::new(token.span(), message).help("remove it"));
+                }
+                Lexeme::Close => {
+                    self.bump();
+                    // With as many `}` as stray `{`, the last one is the block's.
+                    if extra == 0 || self.window[0].kind == Lexeme::End || self.starts_entity(None)
+                    {
+                        break true;
+                    }
+                    extra -= 1;
+                }
+                Lexeme::Open => {
+                    self.bump();
+                    extra += 1;
+                    let message =
+                        format!("`{{` cannot stand inside the block of a `{}`", entity.name);
+                    self.errors
+                        .report(Diagnostic::new(token.span(), message).help("remove it"));
+                }
+                Lexeme::Word if self.starts_entity(Some(entity)) => break false,
+                Lexeme::Word => self.attribute(&mut block),
+            }
+        };
+        if closed {
+            self.check_complete(&block, &title);
+        } else {
+            self.report_open_block(entity, &title);
+        }
+        self.check_relation(&block);
+        match entity.kind {
+            Kind::Camera => self.check_first_camera(&title),
+            Kind::Material => self.materials.define(name),
+            Kind::Texture => self.textures.define(name),
+            Kind::Object(_) | Kind::Light { .. } => {}
+        }
+        self.assembly.add(entity.kind, block.draft);
+    }
+
+    fn end_of_file(&mut self) {
+        let (materials, textures) = (&self.materials, &self.textures);
+        materials.complain(&mut self.errors);
+        textures.complain(&mut self.errors);
+        if self.camera.is_some() || self.errors.are_too_many() {
+            return;
+        }
+        let end = self
+            .text
+            .iter()
+            .rposition(|byte| !super::lex::is_space(*byte))
+            .map_or(0, |last| last + 1);
+        let empty = self.last_end == 0;
+        let message = if empty {
+            "this scene is empty: it has no camera"
+        } else {
+            "this scene has no camera"
+        };
+        let help = "a scene needs `camera name { pixeldim 640 480 worlddim 8 6 viewpoint 4 3 6 }`, for example";
+        self.errors
+            .report(Diagnostic::new(end..end, message).help(help));
+    }
+}

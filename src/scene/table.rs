@@ -1,0 +1,448 @@
+//! The scene language as a table: one row an attribute, one list of rows a level of the class hierarchy.
+//!
+//! The parser, the builder and the listing all walk these rows, so an attribute is named, limited and placed here and
+//! nowhere else. In the flow text → lex → parse → [`Scene`](super::Scene) this is what `parse` looks words up in.
+
+use super::draft::Draft;
+use super::limit::Limit;
+use super::number;
+
+pub use super::limit::MAX_PIXELDIM;
+
+/// Number of procedural shaders for planes: a `pplane`'s `shader` is below it.
+pub const PPLANE_SHADERS: u32 = 3;
+/// Number of procedural shaders for spheres: a `psphere`'s `shader` is below it.
+pub const PSPHERE_SHADERS: u32 = 1;
+/// The entity types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The viewpoint and the screen.
+    Camera,
+    /// How a surface answers light.
+    Material,
+    /// A picture to lay on a `texplane`.
+    Texture,
+    /// A visible object.
+    Object(Class),
+    /// A light, with or without a cone.
+    Light {
+        /// Is it a spotlight?
+        spot: bool,
+    },
+}
+
+/// The classes of visible objects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    /// `plane`
+    Plane,
+    /// `tiled_plane`
+    Tiled,
+    /// `pplane`
+    ProceduralPlane,
+    /// `fplane`
+    Finite,
+    /// `texplane`
+    Textured,
+    /// `sphere`
+    Sphere,
+    /// `psphere`
+    ProceduralSphere,
+}
+
+/// One row: an attribute of an entity.
+pub(super) struct Attribute {
+    /// Its name in the file.
+    pub(super) name: &'static str,
+    /// Another spelling of its name.
+    pub(super) other_name: Option<&'static str>,
+    /// How many values of which type, and where they go.
+    pub(super) take: Take,
+    /// What the values must keep.
+    pub(super) limit: Limit,
+    /// Is it an error to leave it out?
+    pub(super) required: bool,
+}
+
+/// The values of an attribute: their type, their number, and the field that they go to.
+pub(super) enum Take {
+    /// So many numbers.
+    Numbers(usize, Field),
+    /// So many whole numbers.
+    Integers(usize, Field),
+    /// Three numbers, or one that stands for all three.
+    Spread(Field),
+    /// The name of a material.
+    Material(Index),
+    /// The name of a texture.
+    Texture(Index),
+    /// The file name of a picture.
+    Picture,
+}
+
+/// Where numbers go: as long as there are values.
+pub(super) type Field = fn(&mut Draft) -> &mut [f64];
+/// Where a reference goes.
+pub(super) type Index = fn(&mut Draft) -> &mut usize;
+
+/// Two attributes that contradict each other.
+pub(super) struct Relation {
+    /// The attribute that the error points at.
+    pub(super) attribute: &'static str,
+    /// The attribute that it contradicts.
+    pub(super) other: &'static str,
+    /// Do they?
+    pub(super) broken: fn(&Draft) -> bool,
+    /// What is wrong, after "`attribute` ".
+    pub(super) message: &'static str,
+}
+
+/// An entity type: its name, and its rows, base class first.
+pub(super) struct Entity {
+    /// Its name in the file.
+    pub(super) name: &'static str,
+    /// What it makes.
+    pub(super) kind: Kind,
+    /// Its rows, a list for each level of the class hierarchy.
+    levels: &'static [&'static [Attribute]],
+    /// What its attributes must keep between them.
+    pub(super) relation: Option<Relation>,
+}
+
+const fn row(name: &'static str, take: Take, limit: Limit) -> Attribute {
+    Attribute {
+        name,
+        other_name: None,
+        take,
+        limit,
+        required: true,
+    }
+}
+
+const fn optional(name: &'static str, take: Take, limit: Limit) -> Attribute {
+    Attribute {
+        name,
+        other_name: None,
+        take,
+        limit,
+        required: false,
+    }
+}
+
+const CAMERA: &[Attribute] = &[
+    row(
+        "pixeldim",
+        Take::Integers(2, |d| &mut d.pixeldim),
+        Limit::Pixels,
+    ),
+    row(
+        "worlddim",
+        Take::Numbers(2, |d| &mut d.worlddim),
+        Limit::Positive,
+    ),
+    row(
+        "viewpoint",
+        Take::Numbers(3, |d| &mut d.viewpoint),
+        Limit::InFront,
+    ),
+];
+
+const MATERIAL: &[Attribute] = &[
+    optional(
+        "ambient",
+        Take::Numbers(3, |d| &mut d.ambient),
+        Limit::NotNegative,
+    ),
+    optional(
+        "diffuse",
+        Take::Numbers(3, |d| &mut d.diffuse),
+        Limit::NotNegative,
+    ),
+    optional(
+        "specular",
+        Take::Spread(|d| &mut d.specular),
+        Limit::NotNegative,
+    ),
+    optional(
+        "shininess",
+        Take::Numbers(1, |d| &mut d.shininess),
+        Limit::NotNegative,
+    ),
+    optional(
+        "transparency",
+        Take::Numbers(1, |d| &mut d.transparency),
+        Limit::Share,
+    ),
+];
+
+const TEXTURE: &[Attribute] = &[row("filename", Take::Picture, Limit::None)];
+
+const OBJECT: &[Attribute] = &[row(
+    "material",
+    Take::Material(|d| &mut d.material),
+    Limit::None,
+)];
+
+const PLANE: &[Attribute] = &[
+    row(
+        "normal",
+        Take::Numbers(3, |d| &mut d.normal),
+        Limit::NotZero,
+    ),
+    row("point", Take::Numbers(3, |d| &mut d.point), Limit::None),
+];
+
+const SPHERE: &[Attribute] = &[
+    row("center", Take::Numbers(3, |d| &mut d.center), Limit::None),
+    row(
+        "radius",
+        Take::Numbers(1, |d| &mut d.radius),
+        Limit::Positive,
+    ),
+];
+
+const TILED: &[Attribute] = &[
+    row(
+        "altmaterial",
+        Take::Material(|d| &mut d.altmaterial),
+        Limit::None,
+    ),
+    Attribute {
+        other_name: Some("dimensions"),
+        ..row(
+            "dimension",
+            Take::Numbers(2, |d| &mut d.dimension),
+            Limit::Positive,
+        )
+    },
+    optional(
+        "xdir",
+        Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
+        Limit::NotZero,
+    ),
+];
+
+const PROCEDURAL_PLANE: &[Attribute] = &[row(
+    "shader",
+    Take::Integers(1, |d| &mut d.shader),
+    Limit::Below(PPLANE_SHADERS),
+)];
+
+const PROCEDURAL_SPHERE: &[Attribute] = &[row(
+    "shader",
+    Take::Integers(1, |d| &mut d.shader),
+    Limit::Below(PSPHERE_SHADERS),
+)];
+
+const FINITE: &[Attribute] = &[
+    row(
+        "xdir",
+        Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
+        Limit::NotZero,
+    ),
+    row(
+        "dimensions",
+        Take::Numbers(2, |d| &mut d.dimension),
+        Limit::Positive,
+    ),
+];
+
+const TEXTURED: &[Attribute] = &[
+    row("texname", Take::Texture(|d| &mut d.texture), Limit::None),
+    row("mode", Take::Integers(1, |d| &mut d.mode), Limit::Below(2)),
+];
+
+const LIGHT: &[Attribute] = &[
+    row(
+        "location",
+        Take::Numbers(3, |d| &mut d.location),
+        Limit::None,
+    ),
+    row(
+        "emissivity",
+        Take::Numbers(3, |d| &mut d.emissivity),
+        Limit::NotNegative,
+    ),
+];
+
+const SPOT: &[Attribute] = &[
+    row("point", Take::Numbers(3, |d| &mut d.point), Limit::None),
+    row(
+        "theta",
+        Take::Numbers(1, |d| &mut d.theta),
+        Limit::HalfAngle,
+    ),
+];
+
+const ALONG_NORMAL: Option<Relation> = Some(Relation {
+    attribute: "xdir",
+    other: "normal",
+    broken: |d| {
+        d.xdir
+            .is_some_and(|xdir| number::parallel(&xdir, &d.normal))
+    },
+    message: "must not be parallel to `normal`: it is projected onto the plane",
+});
+
+const AIMLESS: Option<Relation> = Some(Relation {
+    attribute: "point",
+    other: "location",
+    broken: |d| d.point == d.location,
+    message: "must differ from `location`: the two give the direction of the light",
+});
+
+const fn entity(
+    name: &'static str,
+    kind: Kind,
+    levels: &'static [&'static [Attribute]],
+    relation: Option<Relation>,
+) -> Entity {
+    Entity {
+        name,
+        kind,
+        levels,
+        relation,
+    }
+}
+
+const fn object(
+    name: &'static str,
+    class: Class,
+    levels: &'static [&'static [Attribute]],
+    relation: Option<Relation>,
+) -> Entity {
+    Entity {
+        name,
+        kind: Kind::Object(class),
+        levels,
+        relation,
+    }
+}
+
+/// All entity types.
+pub(super) static ENTITIES: [Entity; 12] = [
+    entity("camera", Kind::Camera, &[CAMERA], None),
+    entity("material", Kind::Material, &[MATERIAL], None),
+    object("plane", Class::Plane, &[OBJECT, PLANE], None),
+    object("sphere", Class::Sphere, &[OBJECT, SPHERE], None),
+    object(
+        "tiled_plane",
+        Class::Tiled,
+        &[OBJECT, PLANE, TILED],
+        ALONG_NORMAL,
+    ),
+    object(
+        "pplane",
+        Class::ProceduralPlane,
+        &[OBJECT, PLANE, PROCEDURAL_PLANE],
+        None,
+    ),
+    object(
+        "psphere",
+        Class::ProceduralSphere,
+        &[OBJECT, SPHERE, PROCEDURAL_SPHERE],
+        None,
+    ),
+    object(
+        "fplane",
+        Class::Finite,
+        &[OBJECT, PLANE, FINITE],
+        ALONG_NORMAL,
+    ),
+    entity("light", Kind::Light { spot: false }, &[LIGHT], None),
+    entity(
+        "spotlight",
+        Kind::Light { spot: true },
+        &[LIGHT, SPOT],
+        AIMLESS,
+    ),
+    entity("texture", Kind::Texture, &[TEXTURE], None),
+    object(
+        "texplane",
+        Class::Textured,
+        &[OBJECT, PLANE, FINITE, TEXTURED],
+        ALONG_NORMAL,
+    ),
+];
+
+/// Entity types of the language's later life that are known and not supported.
+pub(super) const UNSUPPORTED: [&str; 4] = ["quadric", "triangle", "projector", "revsurf"];
+
+/// The most rows that an entity has: see the test.
+pub(super) const MAX_ROWS: usize = 8;
+
+/// The entity type of this name.
+pub(super) fn find(name: &[u8]) -> Option<&'static Entity> {
+    ENTITIES
+        .iter()
+        .find(|entity| entity.name.as_bytes() == name)
+}
+
+/// The entity type that makes this.
+pub(super) fn of(kind: Kind) -> &'static Entity {
+    // Every kind has its entity (tested); the first stands in for the compiler's sake.
+    ENTITIES
+        .iter()
+        .find(|entity| entity.kind == kind)
+        .unwrap_or(&ENTITIES[0])
+}
+
+impl Entity {
+    /// Its rows, base class first.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &'static Attribute> + use<> {
+        self.levels.iter().copied().flatten()
+    }
+
+    /// The row of this name, by either spelling, and its number.
+    pub(super) fn row(&self, name: &[u8]) -> Option<(usize, &'static Attribute)> {
+        self.rows().enumerate().find(|(_, row)| row.is_called(name))
+    }
+}
+
+impl Attribute {
+    fn is_called(&self, name: &[u8]) -> bool {
+        self.name.as_bytes() == name
+            || self
+                .other_name
+                .is_some_and(|other| other.as_bytes() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_has_its_own_entity() {
+        for entity in &ENTITIES {
+            assert!(std::ptr::eq(of(entity.kind), entity), "{}", entity.name);
+            assert!(std::ptr::eq(find(entity.name.as_bytes()).unwrap(), entity));
+            assert!(!UNSUPPORTED.contains(&entity.name));
+        }
+    }
+
+    #[test]
+    fn rows_fit_and_are_as_long_as_they_say() {
+        for entity in &ENTITIES {
+            assert!(entity.rows().count() <= MAX_ROWS, "{}", entity.name);
+            for row in entity.rows() {
+                if let Take::Numbers(count, field) | Take::Integers(count, field) = row.take {
+                    assert_eq!(
+                        field(&mut Draft::default()).len(),
+                        count,
+                        "{} {}",
+                        entity.name,
+                        row.name
+                    );
+                }
+                assert_eq!(
+                    entity
+                        .rows()
+                        .filter(|other| other.is_called(row.name.as_bytes()))
+                        .count(),
+                    1
+                );
+            }
+        }
+    }
+}

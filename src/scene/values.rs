@@ -1,0 +1,374 @@
+//! The attributes inside a block: looks their rows up in the [table](super::table), reads their values, checks limits.
+//!
+//! The inner half of the parser, text → lex → parse → [`Scene`](super::Scene).
+
+use std::ops::Range;
+
+use super::lex::{Kind as Lexeme, Token};
+use super::names::nearest;
+use super::number::{self, NumberError, looks_numeric};
+use super::parse::{Block, Parser};
+use super::table::{Attribute, ENTITIES, Entity, Take};
+use crate::diagnostic::Diagnostic;
+
+/// Numbers as they are read: their values, their tokens, and whether all was well.
+struct Numbers<'t> {
+    values: [f64; 3],
+    tokens: Vec<Token<'t>>,
+    good: bool,
+}
+
+impl<'t> Parser<'t> {
+    /// Reads an attribute and its values.
+    pub(super) fn attribute(&mut self, block: &mut Block) {
+        let entity = block.entity;
+        let key = self.bump();
+        let (index, row) = match entity.row(key.text) {
+            Some(found) => {
+                if let Some(first) = &block.given[found.0] {
+                    let error =
+                        Diagnostic::new(key.span(), format!("{} is given twice", key.quoted()));
+                    self.errors.report(
+                        error
+                            .also(first.clone(), "first given here")
+                            .help("remove one of them"),
+                    );
+                    // Its values are read and forgotten, but what is wrong with them is said.
+                    let mut again = Block {
+                        draft: block.draft.clone(),
+                        given: block.given.clone(),
+                        ..*block
+                    };
+                    self.values(&mut again, found.0, found.1, key);
+                    return;
+                }
+                found
+            }
+            None => match self.unknown_attribute(block, key) {
+                Some(found) => found,
+                None => return,
+            },
+        };
+        let given = block.given[index].is_some();
+        self.values(block, index, row, key);
+        if !given {
+            block.given[index] = Some(key.start..self.last_end);
+        }
+    }
+
+    /// Complains about an attribute that the entity does not have; returns what it was meant to be, if that is plain.
+    fn unknown_attribute(
+        &mut self,
+        block: &mut Block,
+        key: Token<'t>,
+    ) -> Option<(usize, &'static Attribute)> {
+        let entity = block.entity;
+        let word = key.quoted();
+        let meant = meant_row(entity, key.text);
+        if looks_numeric(key.text) {
+            let message = format!(
+                "expected an attribute of this `{}`, found {word}",
+                entity.name
+            );
+            self.errors
+                .report(Diagnostic::new(key.span(), message).help(attributes_of(entity)));
+            self.skip_numbers();
+            return None;
+        }
+        let owners: Vec<_> = ENTITIES
+            .iter()
+            .filter(|other| other.row(key.text).is_some())
+            .map(|e| e.name)
+            .collect();
+        let error = Diagnostic::new(
+            key.span(),
+            format!("`{}` has no attribute {word}", entity.name),
+        );
+        let place = self.errors.report(match meant {
+            Some((_, row)) => error.help(format!("did you mean `{}`?", row.name)),
+            None if owners.is_empty() => error.help(attributes_of(entity)),
+            None => error.help(format!(
+                "{word} belongs to {}; {}",
+                owners.join(", "),
+                attributes_of(entity)
+            )),
+        });
+        if meant.is_none() {
+            block.stranger.get_or_insert(place);
+            self.skip_strange_values(entity);
+        }
+        meant
+    }
+
+    fn skip_numbers(&mut self) {
+        while self.window[0].is_word() && looks_numeric(self.window[0].text) {
+            self.bump();
+        }
+    }
+
+    /// Skips the values of an attribute that resembles none: numbers, or one word that is no attribute.
+    fn skip_strange_values(&mut self, entity: &'static Entity) {
+        let start = self.last_end;
+        self.skip_numbers();
+        if self.last_end == start && self.is_value_word(entity) {
+            self.bump();
+        }
+    }
+
+    /// Is the next token a word that is no attribute, nor was meant as one, nor starts an entity?
+    fn is_value_word(&self, entity: &'static Entity) -> bool {
+        let [first, second, _] = &self.window;
+        let starts_attribute =
+            second.is_word() && looks_numeric(second.text) && !looks_numeric(first.text);
+        first.is_word()
+            && !starts_attribute
+            && entity.row(first.text).is_none()
+            && meant_row(entity, first.text).is_none()
+            && !self.starts_entity(Some(entity))
+    }
+
+    /// Is the next token the first of its line?
+    fn starts_line(&self) -> bool {
+        self.text[self.last_end..self.window[0].start]
+            .iter()
+            .any(|byte| matches!(byte, b'\n' | b'\r'))
+    }
+
+    /// Reads the values of a row into the draft.
+    fn values(&mut self, block: &mut Block, index: usize, row: &'static Attribute, key: Token<'t>) {
+        block.good[index] = match row.take {
+            Take::Numbers(count, field) => {
+                self.numbers(block, row, key, count..count + 1, false, field)
+            }
+            Take::Integers(count, field) => {
+                self.numbers(block, row, key, count..count + 1, true, field)
+            }
+            Take::Spread(field) => self.numbers(block, row, key, 1..4, false, field),
+            Take::Material(_) | Take::Texture(_) | Take::Picture => {
+                match self.name(block.entity, row, key) {
+                    Some(token) => self.refer(block, row, token),
+                    None => false,
+                }
+            }
+        };
+    }
+
+    /// Looks a name up that an attribute gives.
+    fn refer(&mut self, block: &mut Block, row: &'static Attribute, token: Token<'t>) -> bool {
+        let found = match row.take {
+            Take::Material(index) => self
+                .materials
+                .find(token, &mut self.errors)
+                .map(|found| (index, found)),
+            Take::Texture(index) => self
+                .textures
+                .find(token, &mut self.errors)
+                .map(|found| (index, found)),
+            Take::Numbers(..) | Take::Integers(..) | Take::Spread(_) | Take::Picture => {
+                return self.picture(block, token);
+            }
+        };
+        if let Some((index, found)) = found {
+            *index(&mut block.draft) = found;
+        }
+        found.is_some()
+    }
+
+    fn picture(&mut self, block: &mut Block, token: Token<'t>) -> bool {
+        // Bytes that are not UTF-8 were complained about.
+        let Ok(filename) = std::str::from_utf8(token.text) else {
+            return false;
+        };
+        match self.pictures.read(self.folder, filename) {
+            Ok(picture) => block.draft.picture = Some(picture),
+            Err(why) => {
+                let mut error = Diagnostic::new(
+                    token.span(),
+                    format!("texture {}: {}", token.quoted(), why.message),
+                );
+                if let Some(help) = why.help {
+                    error = error.help(help);
+                }
+                self.errors.report(error);
+            }
+        }
+        block.draft.picture.is_some()
+    }
+
+    /// Reads the one name that an attribute takes.
+    fn name(
+        &mut self,
+        entity: &'static Entity,
+        row: &Attribute,
+        key: Token<'t>,
+    ) -> Option<Token<'t>> {
+        let [first, second, _] = self.window;
+        let next_attribute =
+            entity.row(first.text).is_some() && second.is_word() && looks_numeric(second.text);
+        if !first.is_word() || next_attribute || self.starts_entity(Some(entity)) {
+            let what = if matches!(row.take, Take::Picture) {
+                "a file name"
+            } else {
+                "a name"
+            };
+            self.errors.report(Diagnostic::new(
+                key.span(),
+                format!("`{}` takes {what}, found none", row.name),
+            ));
+            return None;
+        }
+        self.bump();
+        let extra = self.window[0];
+        while self.is_value_word(entity) {
+            self.bump();
+        }
+        if self.last_end > extra.start {
+            let error = Diagnostic::new(
+                extra.start..self.last_end,
+                format!("`{}` takes one name", row.name),
+            );
+            self.errors.report(
+                error
+                    .label("more than one word")
+                    .help("names hold no white space"),
+            );
+            return None;
+        }
+        Some(first)
+    }
+
+    /// Reads numbers, checks how many and whether they keep the row's limit, and puts them where they go.
+    fn numbers(
+        &mut self,
+        block: &mut Block,
+        row: &'static Attribute,
+        key: Token<'t>,
+        counts: Range<usize>,
+        whole: bool,
+        field: super::table::Field,
+    ) -> bool {
+        let mut numbers = Numbers {
+            values: [0.0; 3],
+            tokens: Vec::with_capacity(3),
+            good: true,
+        };
+        let max = counts.end - 1;
+        let mut extra = 0;
+        let mut extra_start = 0;
+        while self.window[0].kind == Lexeme::Word {
+            let token = self.window[0];
+            let count = numbers.tokens.len();
+            // A word that is no number is a wrong value while values lack, unless it looks like the next attribute:
+            // it resembles one, or starts a line.
+            let row_follows = meant_row(block.entity, token.text).is_some()
+                || self.starts_entity(Some(block.entity))
+                || (self.starts_line()
+                    && self.window[1].is_word()
+                    && looks_numeric(self.window[1].text));
+            if !looks_numeric(token.text) && (count >= counts.start || row_follows) {
+                break;
+            }
+            self.bump();
+            if count == max {
+                extra_start = if extra == 0 { token.start } else { extra_start };
+                extra += 1;
+                continue;
+            }
+            numbers.tokens.push(token);
+            match read(token, whole) {
+                Ok(value) => numbers.values[count] = value,
+                Err(error) => {
+                    self.errors.report(error);
+                    numbers.good = false;
+                }
+            }
+        }
+        let found = numbers.tokens.len() + extra;
+        // A row of one or three numbers does not take two.
+        if found != max && found != counts.start {
+            let mut takes = if max == 1 {
+                String::from("1 number")
+            } else {
+                format!("{max} numbers")
+            };
+            if counts.start < max {
+                takes = String::from("1 or 3 numbers");
+            }
+            let span = if extra > 0 {
+                extra_start..self.last_end
+            } else {
+                key.start..self.last_end
+            };
+            let label = if extra > 0 { "too many" } else { "too few" };
+            let error =
+                Diagnostic::new(span, format!("`{}` takes {takes}, found {found}", row.name));
+            self.errors.report(error.label(label));
+            return false;
+        }
+        if !numbers.good {
+            return false;
+        }
+        if found < max {
+            numbers.values = [numbers.values[0]; 3];
+        }
+        let kept = self.check_limit(row, &numbers, max);
+        field(&mut block.draft).copy_from_slice(&numbers.values[..max]);
+        kept
+    }
+
+    fn check_limit(&mut self, row: &Attribute, numbers: &Numbers<'t>, max: usize) -> bool {
+        let tokens = &numbers.tokens;
+        let mut broken = row.limit.broken(&numbers.values[..max]);
+        // One value that stands for three is wrong once.
+        broken.retain(|index| *index < tokens.len());
+        let (Some(first), Some(last)) = (broken.first(), broken.last()) else {
+            return true;
+        };
+        let message = format!("`{}` must be {}", row.name, row.limit.wording());
+        let together = broken.len() == last - first + 1;
+        let error = if together {
+            Diagnostic::new(tokens[*first].start..tokens[*last].end(), message)
+        } else {
+            Diagnostic::new(tokens[*first].span(), message)
+                .also(tokens[*last].span(), "and this one")
+        };
+        self.errors.report(error);
+        false
+    }
+}
+
+/// The row that a misspelt attribute means.
+fn meant_row(entity: &'static Entity, word: &[u8]) -> Option<(usize, &'static Attribute)> {
+    nearest(word, entity.rows().map(|row| row.name.as_bytes())).and_then(|name| entity.row(name))
+}
+
+fn attributes_of(entity: &Entity) -> String {
+    let names: Vec<_> = entity.rows().map(|row| format!("`{}`", row.name)).collect();
+    format!("`{}` has {}", entity.name, names.join(", "))
+}
+
+/// Reads one number.
+fn read(token: Token<'_>, whole: bool) -> Result<f64, Diagnostic> {
+    let word = token.quoted();
+    if whole && let Ok(value) = number::parse_integer(token.text) {
+        return Ok(value as f64);
+    }
+    let what = if whole { "a whole number" } else { "a number" };
+    let error = match number::parse_number(token.text) {
+        Ok(value) if !whole => return Ok(value),
+        Err(NumberError::NotFinite) => {
+            Diagnostic::new(token.span(), format!("{word} is not a finite number"))
+        }
+        Err(NumberError::TooLarge) if !whole => {
+            Diagnostic::new(token.span(), format!("{word} is too large a number"))
+                .help("the largest is about 1.8e308")
+        }
+        _ => Diagnostic::new(token.span(), format!("{word} is not {what}")),
+    };
+    let comma = token.text.contains(&b',');
+    Err(if comma {
+        error.help("numbers have a decimal point, and white space between them")
+    } else {
+        error
+    })
+}
