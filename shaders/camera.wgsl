@@ -1,5 +1,6 @@
 // From a pixel to its ray, from a colour to its bytes. Twin: src/cpu/camera.rs.
 
+//#if any_object
 // A primary ray: base viewpoint (the origin), direction w through the screen, not of unit length.
 struct Ray {
     pixel: vec2i,
@@ -19,6 +20,7 @@ fn inverse_distance(ray: Ray, inverse: f32) -> f32 {
     return CAMERA_GAIN * inverse / sqrt(ray.w2);
 }
 
+//#end
 // The bytes of a pixel from 255 times its value, truncated; red lowest.
 fn camera_setpix(color: vec3f) -> u32 {
     let bytes = vec3u(min(color, vec3f(255.0)));

@@ -1,5 +1,6 @@
 // The closest hit of a ray, and its colour: the entry point. Twin: src/cpu/trace.rs.
 
+//#if any_object
 struct Hit {
     // 1/s: the larger, the nearer; 0 is no hit.
     inverse: f32,
@@ -9,7 +10,6 @@ struct Hit {
     decided: bool,
 //#end
 }
-//#if any_object
 
 // Takes a hit if it is nearer, or as near and first in the file.
 fn nearer(closest: ptr<function, Hit>, inverse: f32, object: u32) {
@@ -24,7 +24,6 @@ fn nearer(closest: ptr<function, Hit>, inverse: f32, object: u32) {
         (*closest).object = object;
     }
 }
-//#end
 
 // The closest object that the ray hits.
 fn find_closest_object(ray: Ray) -> Hit {
@@ -51,6 +50,7 @@ fn find_closest_object(ray: Ray) -> Hit {
     return closest;
 }
 
+//#end
 // The highest byte of a pixel that the CPU has to decide.
 const UNDECIDED = 0xff000000u;
 

@@ -291,13 +291,11 @@ fn not_a_number() {
             3 | sphere ball { material green center 0 nan -inf radius 1e999 }
               |                                           ^^^^
 
-            error: `1e999` is too large a number
+            error: `1e999` is too large a number: the largest is about 1.8e308
               --> scene.txt:3:55
               |
             3 | sphere ball { material green center 0 nan -inf radius 1e999 }
               |                                                       ^^^^^
-              |
-              = help: the largest is about 1.8e308
         "#]],
     );
     check_rest(
@@ -1371,6 +1369,106 @@ fn every_mistake_is_reported_at_once() {
 }
 
 #[test]
+fn mistakes_that_look_like_others() {
+    // A number too few, and the next attribute misspelt.
+    check_rest(
+        "plane wall { material green normal 0 0\nnormall 0 0 1 point 0 0 0 }",
+        expect![[r#"
+        error: `normal` takes 3 numbers, found 2
+          --> scene.txt:3:29
+          |
+        3 | plane wall { material green normal 0 0
+          |                             ^^^^^^^^^^ too few
+
+        error: `plane` has no attribute `normall`
+          --> scene.txt:4:1
+          |
+        4 | normall 0 0 1 point 0 0 0 }
+          | ^^^^^^^
+          |
+          = help: did you mean `normal`?
+    "#]],
+    );
+    // The type of an entity left out: what refers to it is not complained about.
+    check_rest(
+        "red { ambient 1 1 1 }\nplane wall { material red normal 0 0 1 point 0 0 0 }",
+        expect![[r#"
+        error: there is no entity `red`
+          --> scene.txt:3:1
+          |
+        3 | red { ambient 1 1 1 }
+          | ^^^
+          |
+          = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+    "#]],
+    );
+    // A second `}` after a whole entity.
+    check_rest(
+        "material a { ambient 1 1 1 } }\nmaterial b { ambient 1 1 -1 }",
+        expect![[r#"
+        error: `}` closes nothing: no block is open here
+          --> scene.txt:3:30
+          |
+        3 | material a { ambient 1 1 1 } }
+          |                              ^
+          |
+          = help: remove it, or see whether a block before it ends too early
+
+        error: `ambient` must be 0 or more
+          --> scene.txt:4:26
+          |
+        4 | material b { ambient 1 1 -1 }
+          |                          ^^
+    "#]],
+    );
+    // An entity type without name and block before a whole entity.
+    check_rest(
+        "plane\nsphere ball { material green center 0 0 0 radius 0 }",
+        expect![[r#"
+            error: expected a name after `plane`, found `sphere`
+              --> scene.txt:4:1
+              |
+            3 | plane
+              | ----- this entity
+            4 | sphere ball { material green center 0 0 0 radius 0 }
+              | ^^^^^^
+              |
+              = help: an entity is written `type name { attributes }`
+
+            error: `radius` must be greater than 0
+              --> scene.txt:4:50
+              |
+            4 | sphere ball { material green center 0 0 0 radius 0 }
+              |                                                  ^
+        "#]],
+    );
+    // Neither name nor `{`.
+    check_rest(
+        "sphere center 0 0 0 radius 1 material green }",
+        expect![[r#"
+        error: this `sphere` has no name and no `{`
+          --> scene.txt:3:8
+          |
+        3 | sphere center 0 0 0 radius 1 material green }
+          |        ^^^^^^ expected a name and `{` before it
+          |
+          = help: an entity is written `type name { attributes }`
+    "#]],
+    );
+    // A directory as a texture.
+    check_rest(
+        "texture wood { filename . }",
+        expect![[r#"
+        error: texture `.`: is a directory, not a picture
+          --> scene.txt:3:25
+          |
+        3 | texture wood { filename . }
+          |                         ^
+    "#]],
+    );
+}
+
+#[test]
 fn a_hundred_errors_are_printed_and_the_rest_counted() {
     let text = "sphere a { }\n".repeat(250);
     let diagnostics = scene::parse("scene.txt", text.as_bytes(), Path::new("")).unwrap_err();
@@ -1453,9 +1551,7 @@ fn files_that_cannot_be_read() {
         .assert_eq(&message("gallery"));
     expect!["FOLDER/nothing-like-it: there is no such file"].assert_eq(&message("nothing-like-it"));
     std::fs::create_dir(folder.path().join("inner")).unwrap();
-    if cfg!(unix) {
-        expect!["FOLDER/inner: is a directory, not a scene"].assert_eq(&message("inner"));
-    }
+    expect!["FOLDER/inner: is a directory, not a scene"].assert_eq(&message("inner"));
     std::fs::File::create(folder.path().join("large"))
         .unwrap()
         .set_len(scene::MAX_FILE + 1)
@@ -1470,7 +1566,7 @@ fn a_file_without_permission() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("secret.txt");
     std::fs::write(&path, CAMERA).unwrap();
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0)).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o0)).unwrap();
     match scene::load(&path) {
         // The superuser may read everything.
         Ok(_) => assert!(std::fs::read(&path).is_ok()),

@@ -37,7 +37,10 @@ impl PictureOptions {
 
     /// Settings with these options, everything else as it is without options.
     pub(crate) fn settings(&self) -> Settings {
-        Settings { screen_tolerance: self.screen_tolerance, ..Settings::default() }
+        Settings {
+            screen_tolerance: self.screen_tolerance,
+            ..Settings::default()
+        }
     }
 }
 
@@ -104,7 +107,9 @@ impl RenderOptions {
             );
         }
         if self.adapter.is_some() && self.backend == BackendName::Cpu {
-            bail!("--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out");
+            bail!(
+                "--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out"
+            );
         }
         Ok(Settings {
             rows: self.rows.clone(),
@@ -165,18 +170,31 @@ pub(crate) fn cores() -> usize {
 
 /// `640x480`.
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let side = |text: &str| text.parse::<u32>().ok().filter(|n| (1..=MOST_PIXELS).contains(n));
-    let sides = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    let side = |text: &str| {
+        text.parse::<u32>()
+            .ok()
+            .filter(|n| (1..=MOST_PIXELS).contains(n))
+    };
+    let sides = text
+        .split_once(['x', 'X', '×'])
+        .and_then(|(w, h)| Some([side(w)?, side(h)?]));
     sides.ok_or_else(|| "say columns x rows, each 1 to 1000000, like 640x480".to_owned())
 }
 
 /// `0..120`.
 fn rows(text: &str) -> Result<Range<u32>, String> {
-    let bounds = text.split_once("..").and_then(|(a, b)| Some((a.parse::<u32>().ok()?, b.parse::<u32>().ok()?)));
+    let bounds = text
+        .split_once("..")
+        .and_then(|(a, b)| Some((a.parse::<u32>().ok()?, b.parse::<u32>().ok()?)));
     match bounds {
         Some((start, end)) if start < end => Ok(start..end),
-        Some(_) => Err("A must be less than B: A is the first row, B the row after the last".to_owned()),
-        None => Err("say the first row and the row after the last, from 0 at the bottom, like 0..120".to_owned()),
+        Some(_) => {
+            Err("A must be less than B: A is the first row, B the row after the last".to_owned())
+        }
+        None => Err(
+            "say the first row and the row after the last, from 0 at the bottom, like 0..120"
+                .to_owned(),
+        ),
     }
 }
 
@@ -188,8 +206,13 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 /// At least one thread.
 fn threads(text: &str) -> Result<usize, String> {
-    let number = text.parse::<usize>().ok().filter(|n| (1..=MOST_THREADS).contains(n));
-    number.ok_or_else(|| format!("say a number from 1 to {MOST_THREADS}; without --threads all cores are used"))
+    let number = text
+        .parse::<usize>()
+        .ok()
+        .filter(|n| (1..=MOST_THREADS).contains(n));
+    number.ok_or_else(|| {
+        format!("say a number from 1 to {MOST_THREADS}; without --threads all cores are used")
+    })
 }
 
 #[cfg(test)]
@@ -200,7 +223,20 @@ mod tests {
     fn sizes() {
         assert_eq!(size("640x480"), Ok([640, 480]));
         assert_eq!(size("1X1000000"), Ok([1, 1_000_000]));
-        for bad in ["", "640", "640x", "x480", "0x1", "1x0", "1000001x1", "-1x1", "1x1x1", "1 x 1", "1e3x1", "4294967297x1"] {
+        for bad in [
+            "",
+            "640",
+            "640x",
+            "x480",
+            "0x1",
+            "1x0",
+            "1000001x1",
+            "-1x1",
+            "1x1x1",
+            "1 x 1",
+            "1e3x1",
+            "4294967297x1",
+        ] {
             assert!(size(bad).is_err(), "{bad}");
         }
     }
@@ -208,7 +244,18 @@ mod tests {
     #[test]
     fn row_ranges() {
         assert_eq!(rows("0..120"), Ok(0..120));
-        for bad in ["", "..", "1..", "..1", "5..5", "6..5", "-1..5", "0-5", "0..=5", "0..4294967296"] {
+        for bad in [
+            "",
+            "..",
+            "1..",
+            "..1",
+            "5..5",
+            "6..5",
+            "-1..5",
+            "0-5",
+            "0..=5",
+            "0..4294967296",
+        ] {
             assert!(rows(bad).is_err(), "{bad}");
         }
     }

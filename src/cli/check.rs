@@ -11,7 +11,7 @@ use super::{Answer, say, source};
 /// What `plumb check` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Every error of every file is told, with its place and what would mend it. Good files are listed on stdout, errors go to
+Every error of every file is told, with its place and what would mend it. Good files are listed on stdout, errors go to \
 stderr; exit 2 if any file is bad. --json lists both on stdout.")]
 pub(crate) struct Args {
     /// Scene files; `-` is stdin
@@ -42,13 +42,20 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     if args.json {
         say::data(&format!("{:#}\n", Value::Array(reports)))?;
     }
-    if bad == 0 { Ok(Answer::Yes) } else { Ok(Answer::Bad) }
+    if bad == 0 {
+        Ok(Answer::Yes)
+    } else {
+        Ok(Answer::Bad)
+    }
 }
 
 /// `3 objects, 0 lights, 640×480`.
 fn summary(scene: &Scene) -> String {
     let [width, height] = scene.camera.pixeldim;
-    let (objects, lights) = (say::count(scene.objects.len(), "object"), say::count(scene.lights.len(), "light"));
+    let (objects, lights) = (
+        say::count(scene.objects.len(), "object"),
+        say::count(scene.lights.len(), "light"),
+    );
     format!("{objects}, {lights}, {width}×{height}")
 }
 

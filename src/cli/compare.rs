@@ -12,7 +12,7 @@ use super::{Answer, SOFTWARE, picture, say, source};
 /// What `plumb compare` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Pictures are read as PPM, PNG or EXR, whatever their names say; EXR is quantised as a rendering is. Rows count from the
+Pictures are read as PPM, PNG or EXR, whatever their names say; EXR is quantised as a rendering is. Rows count from the \
 bottom. Exit 0: the same; 1: different pixels or sizes; 2: one cannot be read.")]
 pub(crate) struct Args {
     /// One picture
@@ -30,17 +30,27 @@ pub(crate) struct Args {
 
 /// Compares the pictures.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
-    let diff = args.diff.as_ref().map(|out| target(out, args)).transpose()?;
+    let diff = args
+        .diff
+        .as_ref()
+        .map(|out| target(out, args))
+        .transpose()?;
     let (a, b) = (image::read(&args.a)?, image::read(&args.b)?);
     let compared = image::compare(&a, &b);
     if let Some((target, format)) = &diff {
         match image::difference(&a, &b) {
             Ok(picture) => write(picture, target, *format)?,
-            Err(_) => say::note(&format!("{target} is not written: pictures of different sizes have no difference picture")),
+            Err(_) => say::note(&format!(
+                "{target} is not written: pictures of different sizes have no difference picture"
+            )),
         }
     }
     let same = compared.as_ref().is_ok_and(Comparison::is_same);
-    let text = if args.json { to_json(args, &compared) } else { to_text(args, &compared) };
+    let text = if args.json {
+        to_json(args, &compared)
+    } else {
+        to_text(args, &compared)
+    };
     match &diff {
         // The difference picture has stdout for itself.
         Some((target, _)) if target.is_stdout() => say::talk(&text),
@@ -56,15 +66,23 @@ fn target(out: &Path, args: &Args) -> Result<(Target, Format)> {
     if format == Format::Exr {
         bail!("a difference picture has bytes, no values: write it as .ppm or .png");
     }
-    if [&args.a, &args.b].iter().any(|read| source::is_same_file(out, read)) {
-        bail!("{} is one of the pictures to compare: give the difference another name", out.display());
+    if [&args.a, &args.b]
+        .iter()
+        .any(|read| source::is_same_file(out, read))
+    {
+        bail!(
+            "{} is one of the pictures to compare: give the difference another name",
+            out.display()
+        );
     }
     Ok((target, format))
 }
 
 /// Writes the difference picture.
 fn write(picture: Picture, target: &Target, format: Format) -> Result<()> {
-    let metadata = Metadata { entries: vec![("Software".to_owned(), SOFTWARE.to_owned())] };
+    let metadata = Metadata {
+        entries: vec![("Software".to_owned(), SOFTWARE.to_owned())],
+    };
     let mut out = picture::Picture::open(target, format, picture.width, picture.height, metadata)?;
     match out.write(&picture.into_band()) {
         Ok(()) => out.finish().map(drop).map_err(Into::into),
@@ -77,7 +95,10 @@ fn to_text(args: &Args, compared: &Result<Comparison, SizesDiffer>) -> String {
     let c = match compared {
         Ok(c) => c,
         Err(SizesDiffer { a, b }) => {
-            return format!("{names} have different sizes: {}×{} and {}×{}\n", a.0, a.1, b.0, b.1);
+            return format!(
+                "{names} have different sizes: {}×{} and {}×{}\n",
+                a.0, a.1, b.0, b.1
+            );
         }
     };
     let size = format!("{}×{}", c.width, c.height);
@@ -113,7 +134,9 @@ fn significant(value: f64) -> String {
 fn to_json(args: &Args, compared: &Result<Comparison, SizesDiffer>) -> String {
     let (a, b) = (args.a.display().to_string(), args.b.display().to_string());
     let value = match compared {
-        Ok(c) => json!({ "a": a, "b": b, "same": c.is_same(), "sizes_differ": false, "comparison": c }),
+        Ok(c) => {
+            json!({ "a": a, "b": b, "same": c.is_same(), "sizes_differ": false, "comparison": c })
+        }
         Err(differ) => json!({
             "a": a,
             "b": b,

@@ -12,7 +12,7 @@ use super::{Answer, SOFTWARE, args, say};
 /// What `plumb doctor` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Exit 1: there is none that can be
+Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Exit 1: there is none that can be \
 used, and the CPU renders.")]
 pub(crate) struct Args {
     /// Print the same as JSON
@@ -23,10 +23,20 @@ pub(crate) struct Args {
 /// Lists the adapters.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
     let adapters = adapters();
-    let chosen = adapters.iter().position(|adapter| adapter.problem.is_none());
-    let text = if args.json { to_json(&adapters, chosen) } else { to_text(&adapters, chosen) };
+    let chosen = adapters
+        .iter()
+        .position(|adapter| adapter.problem.is_none());
+    let text = if args.json {
+        to_json(&adapters, chosen)
+    } else {
+        to_text(&adapters, chosen)
+    };
     say::data(&text)?;
-    Ok(if chosen.is_some() { Answer::Yes } else { Answer::No })
+    Ok(if chosen.is_some() {
+        Answer::Yes
+    } else {
+        Answer::No
+    })
 }
 
 fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
@@ -39,11 +49,20 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
         };
         line("driver", adapter.driver.clone());
         line("interface", adapter.backend.clone());
-        line("storage buffer", format!("{} at most", bytes(adapter.max_storage_buffer)));
+        line(
+            "storage buffer",
+            format!("{} at most", bytes(adapter.max_storage_buffer)),
+        );
         line("buffer", format!("{} at most", bytes(adapter.max_buffer)));
-        line("workgroup", format!("{} invocations at most", adapter.max_workgroup));
+        line(
+            "workgroup",
+            format!("{} invocations at most", adapter.max_workgroup),
+        );
         line("timestamps", yes(adapter.timestamps));
-        line("f64 in shaders", format!("{} (not needed)", yes(adapter.shader_f64)));
+        line(
+            "f64 in shaders",
+            format!("{} (not needed)", yes(adapter.shader_f64)),
+        );
         if let Some(problem) = &adapter.problem {
             line("cannot be used", problem.clone());
         }
@@ -56,16 +75,31 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
 /// Which one, and why.
 fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
     let Some(adapter) = chosen.and_then(|i| adapters.get(i)) else {
-        let what = if adapters.is_empty() { "there is no GPU adapter" } else { "none of the adapters can be used" };
-        return format!("plumb renders on the CPU: {what}.\nFor a GPU: {}.", install_hint());
+        let what = if adapters.is_empty() {
+            "there is no GPU adapter"
+        } else {
+            "none of the adapters can be used"
+        };
+        return format!(
+            "plumb renders on the CPU: {what}.\nFor a GPU: {}.",
+            install_hint()
+        );
     };
-    let usable = adapters.iter().filter(|adapter| adapter.problem.is_none()).count();
+    let usable = adapters
+        .iter()
+        .filter(|adapter| adapter.problem.is_none())
+        .count();
     let why = match (adapters.len(), usable) {
         (1, _) => "it is the only adapter".to_owned(),
         (_, 1) => "it is the only adapter that can be used".to_owned(),
-        _ => format!("of {usable} it comes first in the order discrete, integrated, virtual, software"),
+        _ => format!(
+            "of {usable} it comes first in the order discrete, integrated, virtual, software"
+        ),
     };
-    format!("plumb renders on {}: {why}.\nAnother: --adapter PART-OF-NAME, or --backend cpu.", adapter.name)
+    format!(
+        "plumb renders on {}: {why}.\nAnother: --adapter PART-OF-NAME, or --backend cpu.",
+        adapter.name
+    )
 }
 
 fn to_json(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
@@ -138,6 +172,9 @@ mod tests {
         let two = [adapter("a", Some("it is too old")), adapter("b", None)];
         let text = to_text(&two, Some(1));
         assert!(text.contains("\n* b (software)"), "{text}");
-        assert!(text.contains("plumb renders on b: it is the only adapter that can be used"), "{text}");
+        assert!(
+            text.contains("plumb renders on b: it is the only adapter that can be used"),
+            "{text}"
+        );
     }
 }

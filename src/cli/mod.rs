@@ -42,42 +42,45 @@ const INTERRUPTED: i32 = 130;
 const LONG_ABOUT: &str = "\
 plumb is a ray tracer on the GPU: a scene file in, a picture out. Without a GPU the same tracer runs on the CPU.
 
-Without a command, plumb is a filter, as in the course notes: it reads a scene from stdin, lists the model on stderr and
+Without a command, plumb is a filter, as in the course notes: it reads a scene from stdin, lists the model on stderr and \
 writes the picture to stdout as PPM.";
 
-const AFTER_HELP: &str = "See `plumb --help` for examples and the scene language, `plumb COMMAND --help` for a command.";
+const AFTER_HELP: &str =
+    "See `plumb --help` for examples and the scene language, `plumb COMMAND --help` for a command.";
 
 const AFTER_LONG_HELP: &str = "\
 EXAMPLES
-  plumb render scenes/notes/walls.txt              a picture, walls.ppm, in the current folder
+  plumb render scenes/notes/walls.txt   a picture, walls.ppm, in this folder
   plumb render scene.txt -o out.png --size 1920x1080
-  plumb < scene.txt > picture.ppm                  the notes' own usage
-  plumb check scenes/*/*.txt                       every error of every file
-  plumb probe scene.txt 100 40                     why is this pixel what it is? (y from the bottom)
-  plumb render scene.txt --backend cpu -o cpu.ppm && plumb compare cpu.ppm out.png
-  plumb doctor                                     which GPU would be used, and why
+  plumb < scene.txt > picture.ppm       the notes' own usage
+  plumb check scenes/*/*.txt            every error of every file
+  plumb probe scene.txt 100 40          why a pixel is what it is (y upwards)
+  plumb compare a.ppm b.png             are they the same, and if not, where?
+  plumb doctor                          which GPU would be used, and why
 
 THE SCENE LANGUAGE
-  A scene is a list of blocks, each a type, a name and attributes; # starts a comment. The screen is the rectangle from
-  (0, 0, 0) to worlddim, seen from the viewpoint; x goes right, y up, z towards you.
+  A scene is a list of blocks, each a type, a name and attributes; # starts a
+  comment. The screen is the rectangle from (0, 0, 0) to worlddim, seen from
+  the viewpoint; x goes right, y up, z towards you.
 
       camera   cam   { pixeldim 640 480   worlddim 8 6   viewpoint 4 3 6 }
       material green { ambient 0 5 0 }
       plane    wall  { material green   normal 3 0 1   point 0 0 0 }
       sphere   ball  { material green   center 4 2 -5   radius 2 }
 
-  Types: camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane.
-  A material is defined before it is used; there is one camera; everything else comes in any order.
-  docs/SCENE.md has every attribute with its limits, scenes/ has examples.
+  Types: camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane,
+  light, spotlight, texture, texplane. A material is defined before it is used;
+  there is one camera; everything else comes in any order. docs/SCENE.md has
+  every attribute with its limits, scenes/ has examples.
 
 EXIT CODES
   0   done
-  1   done, and the answer is no: pictures differ (compare), there is no adapter (doctor)
+  1   done, and the answer is no: pictures differ (compare), no adapter (doctor)
   2   bad input or failure; what is wrong is on stderr
   130 ended by Ctrl-C or SIGTERM; no unfinished file remains
 
 ENVIRONMENT
-  RUST_LOG   what the GPU's library may say on stderr, such as RUST_LOG=wgpu=warn
+  RUST_LOG   what the GPU's library may say on stderr: RUST_LOG=wgpu=warn
   NO_COLOR   no colours";
 
 /// A ray tracer on the GPU for the scene language of a university course.
@@ -96,7 +99,10 @@ ENVIRONMENT
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    #[command(flatten, next_help_heading = "Options of the filter use (those of `plumb render`)")]
+    #[command(
+        flatten,
+        next_help_heading = "Options of the filter use (those of `plumb render`)"
+    )]
     filter: RenderOptions,
 }
 
@@ -186,11 +192,19 @@ fn usage(error: &clap::Error) -> ExitCode {
             _ => ExitCode::SUCCESS,
         };
     }
-    if matches!(error.kind(), ErrorKind::InvalidSubcommand | ErrorKind::UnknownArgument) {
+    if matches!(
+        error.kind(),
+        ErrorKind::InvalidSubcommand | ErrorKind::UnknownArgument
+    ) {
         // `plumb scene.txt` is what everybody types first.
-        let first = env::args_os().nth(1).filter(|first| Path::new(first).is_file());
+        let first = env::args_os()
+            .nth(1)
+            .filter(|first| Path::new(first).is_file());
         if let Some(scene) = first {
-            say::talk(&format!("\n  tip: to render a scene: plumb render {}\n", Path::new(&scene).display()));
+            say::talk(&format!(
+                "\n  tip: to render a scene: plumb render {}\n",
+                Path::new(&scene).display()
+            ));
         }
     }
     ExitCode::from(FAILED)

@@ -25,7 +25,14 @@ impl Picture {
         rows: u32,
         metadata: Metadata,
     ) -> Result<Self, OutputError> {
-        let mut picture = Self { target: target.clone(), format, width, rows, metadata, output: None };
+        let mut picture = Self {
+            target: target.clone(),
+            format,
+            width,
+            rows,
+            metadata,
+            output: None,
+        };
         if !target.is_stdout() {
             picture.opened()?;
         }
@@ -35,9 +42,13 @@ impl Picture {
     fn opened(&mut self) -> Result<&mut Output, OutputError> {
         let output = match self.output.take() {
             Some(output) => output,
-            None => {
-                Output::open(self.target.clone(), self.format, self.width, self.rows, self.metadata.clone())?
-            }
+            None => Output::open(
+                self.target.clone(),
+                self.format,
+                self.width,
+                self.rows,
+                self.metadata.clone(),
+            )?,
         };
         Ok(self.output.insert(output))
     }
@@ -52,14 +63,30 @@ impl Picture {
         // One that `opened` gave comes back as it was.
         match source.downcast::<OutputError>() {
             Ok(error) => error.into(),
-            Err(source) => OutputError::Write { target: self.target, source }.into(),
+            Err(source) => OutputError::Write {
+                target: self.target,
+                source,
+            }
+            .into(),
         }
     }
 
     /// Ends the picture and gives it its name.
     pub(crate) fn finish(mut self) -> Result<Finished, OutputError> {
         self.opened()?;
-        let Self { target, rows, output, .. } = self;
-        output.map_or(Err(OutputError::Unfinished { target, written: 0, rows }), Output::finish)
+        let Self {
+            target,
+            rows,
+            output,
+            ..
+        } = self;
+        output.map_or(
+            Err(OutputError::Unfinished {
+                target,
+                written: 0,
+                rows,
+            }),
+            Output::finish,
+        )
     }
 }

@@ -23,7 +23,7 @@ const LISTED: usize = 50;
 /// What `plumb probe` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Prints the ray, what every object answered to it, and the colour, all as the CPU's reference tracer has it in f64. Why
+Prints the ray, what every object answered to it, and the colour, all as the CPU's reference tracer has it in f64. Why \
 an object is missed is found in exact arithmetic; where that disagrees with f64 it says so. The closest hit is marked *.")]
 pub(crate) struct Args {
     /// The scene file; `-` is stdin
@@ -59,7 +59,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         );
     };
     let probe = Probe::new(&scene, args.picture.screen_tolerance, x, y);
-    let text = probe.text(&name, args.all).map_err(|_| anyhow!("pixel ({x}, {y}) is out of f64's range"))?;
+    let text = probe
+        .text(&name, args.all)
+        .map_err(|_| anyhow!("pixel ({x}, {y}) is out of f64's range"))?;
     say::data(&text)?;
     Ok(Answer::Yes)
 }
@@ -80,7 +82,15 @@ impl<'a> Probe<'a> {
         let prepared = Prepared::new(scene, screen_tolerance);
         let ray = camera_getdir(&prepared.camera, f64::from(x), f64::from(y));
         let exact = ExactRay::new(&scene.camera, x, y);
-        Self { scene, prepared, screen_tolerance, x, y, ray, exact }
+        Self {
+            scene,
+            prepared,
+            screen_tolerance,
+            x,
+            y,
+            ray,
+            exact,
+        }
     }
 
     fn text(&self, name: &str, all: bool) -> Result<String, Undecided> {
@@ -92,8 +102,17 @@ impl<'a> Probe<'a> {
         let mut line = |what: &str, value: String| {
             let _ = writeln!(text, "{what:<13}{value}");
         };
-        line("scene", format!("{name}, {width}×{height}, screen tolerance {}", self.screen_tolerance));
-        line("pixel", format!("({}, {}) from the bottom left", self.x, self.y));
+        line(
+            "scene",
+            format!(
+                "{name}, {width}×{height}, screen tolerance {}",
+                self.screen_tolerance
+            ),
+        );
+        line(
+            "pixel",
+            format!("({}, {}) from the bottom left", self.x, self.y),
+        );
         line("world point", triple(self.exact.world_point()));
         line("ray from", triple(self.scene.camera.viewpoint.to_array()));
         line("direction", triple(direction));
@@ -107,17 +126,32 @@ impl<'a> Probe<'a> {
         let hits = self.hits()?;
         let objects = &self.scene.objects;
         let with_misses = all || objects.len() <= LISTED;
-        let widest = |width: fn(&plumb::scene::Object) -> usize| objects.iter().map(width).max().unwrap_or(0).min(24);
-        let (names, entities) = (widest(|object| object.name.chars().count()), widest(|object| object.entity().len()));
+        let widest = |width: fn(&plumb::scene::Object) -> usize| {
+            objects.iter().map(width).max().unwrap_or(0).min(24)
+        };
+        let (names, entities) = (
+            widest(|object| object.name.chars().count()),
+            widest(|object| object.entity().len()),
+        );
         let closest = traced.hit.map(|hit| hit.object);
         let missed = hits.iter().filter(|hit| hit.is_none()).count();
-        let _ = writeln!(text, "objects      {}, {} hit", objects.len(), objects.len() - missed);
+        let _ = writeln!(
+            text,
+            "objects      {}, {} hit",
+            objects.len(),
+            objects.len() - missed
+        );
         for (index, (object, hit)) in objects.iter().zip(&hits).enumerate() {
             if hit.is_none() && !with_misses {
                 continue;
             }
             let mark = if closest == Some(index) { "*" } else { " " };
-            let _ = write!(text, "  {mark} {:<names$}  {:<entities$}  ", object.name, object.entity());
+            let _ = write!(
+                text,
+                "  {mark} {:<names$}  {:<entities$}  ",
+                object.name,
+                object.entity()
+            );
             let verdict = self.exact.ask(self.scene, index, self.screen_tolerance);
             let _ = match (hit, verdict) {
                 (Some(hit), verdict) => {
@@ -127,10 +161,18 @@ impl<'a> Probe<'a> {
                         Verdict::Hit => String::new(),
                         Verdict::Miss(reason) => format!(" (in f64; exactly: miss, {reason})"),
                     };
-                    writeln!(text, "hit   t = {}, at {}{doubt}", digits(t), triple(point.to_array()))
+                    writeln!(
+                        text,
+                        "hit   t = {}, at {}{doubt}",
+                        digits(t),
+                        triple(point.to_array())
+                    )
                 }
                 (None, Verdict::Miss(reason)) => writeln!(text, "miss  {reason}"),
-                (None, Verdict::Hit) => writeln!(text, "miss  (in f64; exactly: hit, by less than f64 can tell)"),
+                (None, Verdict::Hit) => writeln!(
+                    text,
+                    "miss  (in f64; exactly: hit, by less than f64 can tell)"
+                ),
             };
         }
         if missed > 0 && !with_misses {
@@ -144,11 +186,19 @@ impl<'a> Probe<'a> {
         let mut hits = vec![None; self.scene.objects.len()];
         for (index, plane) in self.prepared.planes.iter().enumerate() {
             let inverse = plane_hits(plane, &self.ray)?;
-            hits[plane.object] = inverse.map(|inverse| Hit { inverse, object: plane.object, index });
+            hits[plane.object] = inverse.map(|inverse| Hit {
+                inverse,
+                object: plane.object,
+                index,
+            });
         }
         for (index, sphere) in self.prepared.spheres.iter().enumerate() {
             let inverse = sphere_hits(&self.prepared.camera, sphere, &self.ray)?;
-            hits[sphere.object] = inverse.map(|inverse| Hit { inverse, object: sphere.object, index });
+            hits[sphere.object] = inverse.map(|inverse| Hit {
+                inverse,
+                object: sphere.object,
+                index,
+            });
         }
         Ok(hits)
     }
@@ -164,7 +214,10 @@ impl<'a> Probe<'a> {
                 let object = &self.scene.objects[hit.object];
                 let point = hit_point(self.scene, &self.prepared, traced, hit);
                 let t = 1.0 / inverse_distance(&self.prepared.camera, &self.ray, hit.inverse);
-                line("hit", format!("{} at {}", object.name, triple(point.to_array())));
+                line(
+                    "hit",
+                    format!("{} at {}", object.name, triple(point.to_array())),
+                );
                 line("ambient", triple(components(traced.ambient)));
                 line("path length", digits(t));
             }
@@ -202,7 +255,11 @@ fn digits(value: f64) -> String {
 
 /// Without zeros at the end of the fraction.
 fn trimmed(text: &str) -> &str {
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -224,7 +281,13 @@ mod tests {
         ] {
             assert_eq!(digits(value), text, "{value:?}");
         }
-        for value in [std::f64::consts::PI, 1.0 / 7.0, 6.02e23, 1.6e-19, 123_456.789] {
+        for value in [
+            std::f64::consts::PI,
+            1.0 / 7.0,
+            6.02e23,
+            1.6e-19,
+            123_456.789,
+        ] {
             assert_eq!(digits(value).parse(), Ok(value));
         }
     }

@@ -23,7 +23,10 @@ impl Progress {
             bar.set_style(style);
         }
         let watched = wanted && io::stderr().is_terminal();
-        Self { bar, pending: watched.then(|| Instant::now() + PATIENCE) }
+        Self {
+            bar,
+            pending: watched.then(|| Instant::now() + PATIENCE),
+        }
     }
 
     /// So many rows more are done.

@@ -23,11 +23,11 @@ use super::{Answer, SOFTWARE, say, source};
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 EXAMPLES
-  plumb render scene.txt                           scene.ppm, in the current folder
+  plumb render scene.txt                 scene.ppm, in the current folder
   plumb render scene.txt -o big.png --size 3840x2160
-  plumb render scene.txt -o values.exr             the values before they become bytes
-  plumb render scene.txt -o - | display            PPM on stdout
-  plumb render scene.txt --rows 0..100 -o low.ppm  the lowest 100 rows
+  plumb render scene.txt -o values.exr   the values before they become bytes
+  plumb render scene.txt -o - | display  PPM on stdout
+  plumb render scene.txt --rows 0..100   the lowest 100 rows
   plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt")]
 pub(crate) struct Args {
     /// The scene file; `-` is stdin
@@ -72,7 +72,9 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
     if io::stdin().is_terminal() {
         return Ok(Answer::Nothing);
     }
-    let Some(scene) = source::load_stdin()? else { return Ok(Answer::Nothing) };
+    let Some(scene) = source::load_stdin()? else {
+        return Ok(Answer::Nothing);
+    };
     let job = Job::new(source::STDIN, None, scene, options);
     if job.talks() {
         let mut listing = Vec::new();
@@ -83,14 +85,25 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
 }
 
 impl<'a> Job<'a> {
-    fn new(name: &'a str, file: Option<&'a Path>, mut scene: Scene, options: &'a RenderOptions) -> Self {
+    fn new(
+        name: &'a str,
+        file: Option<&'a Path>,
+        mut scene: Scene,
+        options: &'a RenderOptions,
+    ) -> Self {
         options.picture.apply(&mut scene);
-        Self { name, file, scene, options }
+        Self {
+            name,
+            file,
+            scene,
+            options,
+        }
     }
 
     /// Whether stderr is for talk: not if silence was asked for, nor if the report is the only thing to be there.
     fn talks(&self) -> bool {
-        let report_on_stderr = self.options.json && self.target().is_ok_and(|target| target.is_stdout());
+        let report_on_stderr =
+            self.options.json && self.target().is_ok_and(|target| target.is_stdout());
         !self.options.quiet && !report_on_stderr
     }
 
@@ -99,9 +112,14 @@ impl<'a> Job<'a> {
         if let Some(output) = &self.options.output {
             return Ok(Target::from_argument(output.as_os_str()));
         }
-        let Some(file) = self.file else { return Ok(Target::Stdout) };
+        let Some(file) = self.file else {
+            return Ok(Target::Stdout);
+        };
         let Some(stem) = file.file_stem().filter(|stem| !stem.is_empty()) else {
-            bail!("{} has no name to call the picture by: give one with -o", file.display());
+            bail!(
+                "{} has no name to call the picture by: give one with -o",
+                file.display()
+            );
         };
         let mut name = stem.to_owned();
         name.push(".ppm");
@@ -114,15 +132,32 @@ impl<'a> Job<'a> {
         match target {
             Target::Stdout => {
                 if self.options.output.is_none() && io::stdout().is_terminal() {
-                    bail!("the picture would go to the terminal: redirect it, `> picture.ppm`, or give a name with -o");
+                    bail!(
+                        "the picture would go to the terminal: redirect it, `> picture.ppm`, or give a name with -o"
+                    );
                 }
             }
             Target::Path(path) => {
-                if self.file.is_some_and(|scene| source::is_same_file(path, scene)) {
-                    bail!("{} is the scene itself: give the picture another name with -o", path.display());
+                if self
+                    .file
+                    .is_some_and(|scene| source::is_same_file(path, scene))
+                {
+                    bail!(
+                        "{} is the scene itself: give the picture another name with -o",
+                        path.display()
+                    );
                 }
-                if let Some(texture) = self.scene.textures.iter().find(|texture| source::is_same_file(path, &texture.path)) {
-                    bail!("{} is the scene's texture `{}`: give the picture another name", path.display(), texture.name);
+                if let Some(texture) = self
+                    .scene
+                    .textures
+                    .iter()
+                    .find(|texture| source::is_same_file(path, &texture.path))
+                {
+                    bail!(
+                        "{} is the scene's texture `{}`: give the picture another name",
+                        path.display(),
+                        texture.name
+                    );
                 }
             }
         }
@@ -132,10 +167,26 @@ impl<'a> Job<'a> {
     fn run(&self) -> Result<Answer> {
         let start = Instant::now();
         let target = self.target()?;
+        if let Target::Path(path) = &target
+            && path.is_dir()
+        {
+            bail!(
+                "cannot write {}: it is a folder; name the file too, such as picture.ppm",
+                path.display()
+            );
+        }
         let format = target.format()?;
         let settings = self.options.settings(&self.scene, format.wants_values())?;
         self.check(&target)?;
-        let mut picture = Picture::open(self, &target, format, &settings)?;
+        let [width, height] = self.scene.camera.pixeldim;
+        let rows = settings.rows.clone().unwrap_or(0..height);
+        let mut picture = Picture::open(
+            &target,
+            format,
+            width,
+            rows.len() as u32,
+            self.metadata(&rows),
+        )?;
         let mut progress = Progress::new(rows.len() as u64, self.talks());
         let rendered = render::render(&self.scene, &settings, &mut |band| {
             picture.write(band)?;
@@ -155,14 +206,20 @@ impl<'a> Job<'a> {
         self.list(&settings, &report)?;
         self.report(&target, format, &report, &finished)?;
         if self.talks() && !self.options.json {
-            say::talk(&format!("{}\n", self.summary(&target, &report, start.elapsed())));
+            say::talk(&format!(
+                "{}\n",
+                self.summary(&target, &report, start.elapsed())
+            ));
         }
         Ok(Answer::Yes)
     }
 
     /// What changes the bytes of a picture; no date and no path, so that the same picture is the same file.
     fn metadata(&self, rows: &Range<u32>) -> Metadata {
-        let scene = self.file.and_then(Path::file_name).unwrap_or(OsStr::new(self.name));
+        let scene = self
+            .file
+            .and_then(Path::file_name)
+            .unwrap_or(OsStr::new(self.name));
         let [width, height] = self.scene.camera.pixeldim;
         let entry = |key: &str, text: String| (key.to_owned(), text);
         Metadata {
@@ -171,7 +228,10 @@ impl<'a> Job<'a> {
                 entry("plumb:scene", scene.to_string_lossy().into_owned()),
                 entry("plumb:size", format!("{width}x{height}")),
                 entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
-                entry("plumb:screen-tolerance", self.options.picture.screen_tolerance.to_string()),
+                entry(
+                    "plumb:screen-tolerance",
+                    self.options.picture.screen_tolerance.to_string(),
+                ),
             ],
         }
     }
@@ -180,7 +240,10 @@ impl<'a> Job<'a> {
     fn explain(&self, error: render::Error) -> anyhow::Error {
         match error {
             render::Error::Gpu(plumb::gpu::GpuError::NoAdapter) => {
-                anyhow!("{error}; {}, or leave out --backend gpu", render::install_hint())
+                anyhow!(
+                    "{error}; {}, or leave out --backend gpu",
+                    render::install_hint()
+                )
             }
             error => anyhow::Error::new(error),
         }
@@ -188,7 +251,9 @@ impl<'a> Job<'a> {
 
     /// The notes' listing, if it was asked for.
     fn list(&self, settings: &Settings, report: &Report) -> Result<()> {
-        let Some(shown) = self.options.shown() else { return Ok(()) };
+        let Some(shown) = self.options.shown() else {
+            return Ok(());
+        };
         let prepared = Prepared::new(&self.scene, settings.screen_tolerance);
         let [start, end] = report.rows;
         let mut stderr = io::BufWriter::new(io::stderr().lock());
@@ -200,7 +265,13 @@ impl<'a> Job<'a> {
     }
 
     /// The report of `--json`.
-    fn report(&self, target: &Target, format: Format, report: &Report, finished: &Finished) -> Result<()> {
+    fn report(
+        &self,
+        target: &Target,
+        format: Format,
+        report: &Report,
+        finished: &Finished,
+    ) -> Result<()> {
         if !self.options.json {
             return Ok(());
         }
@@ -229,7 +300,10 @@ impl<'a> Job<'a> {
             size += &format!(" (rows {start}..{end} of {})", report.height);
         }
         let tracer = match (report.backend, &report.adapter) {
-            (Backend::Gpu, Some(adapter)) => format!("GPU {adapter}"),
+            // Its driver, in brackets behind the name, is told by --json.
+            (Backend::Gpu, Some(adapter)) => {
+                format!("GPU {}", adapter.split(" [").next().unwrap_or(adapter))
+            }
             _ => format!("CPU, {}", say::count(report.threads.unwrap_or(1), "thread")),
         };
         format!("{target}: {size}, {tracer}, {:.2} s", took.as_secs_f64())

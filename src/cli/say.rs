@@ -26,8 +26,12 @@ impl std::error::Error for BrokenPipe {}
 pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         cause.is::<BrokenPipe>()
-            || cause.downcast_ref::<OutputError>().is_some_and(OutputError::is_broken_pipe)
-            || cause.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+            || cause
+                .downcast_ref::<OutputError>()
+                .is_some_and(OutputError::is_broken_pipe)
+            || cause
+                .downcast_ref::<io::Error>()
+                .is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
     })
 }
 
@@ -98,12 +102,18 @@ pub(crate) fn causes(error: &anyhow::Error) -> String {
 /// Whether stderr is a terminal that is to be coloured.
 fn color() -> bool {
     let set = |name: &str| env::var_os(name).is_some_and(|value| !value.is_empty());
-    io::stderr().is_terminal() && !set("NO_COLOR") && env::var_os("TERM").is_none_or(|term| term != "dumb")
+    io::stderr().is_terminal()
+        && !set("NO_COLOR")
+        && env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
 /// `1 object`, `2 objects`.
 pub(crate) fn count(n: usize, what: &str) -> String {
-    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+    if n == 1 {
+        format!("1 {what}")
+    } else {
+        format!("{n} {what}s")
+    }
 }
 
 #[cfg(test)]
@@ -113,9 +123,12 @@ mod tests {
     #[test]
     fn a_cause_is_said_once() {
         let inner = io::Error::other("no space");
-        let outer = anyhow::Error::new(inner).context("writing a.ppm failed: no space").context("a.ppm");
+        let outer = anyhow::Error::new(inner)
+            .context("writing a.ppm failed: no space")
+            .context("a.ppm");
         assert_eq!(causes(&outer), "a.ppm: writing a.ppm failed: no space");
-        let plain = anyhow::Error::new(io::Error::other("no space")).context("writing a.ppm failed");
+        let plain =
+            anyhow::Error::new(io::Error::other("no space")).context("writing a.ppm failed");
         assert_eq!(causes(&plain), "writing a.ppm failed: no space");
     }
 
@@ -123,6 +136,8 @@ mod tests {
     fn broken_pipes_are_found_below_their_context() {
         let pipe = anyhow::Error::new(io::Error::from(ErrorKind::BrokenPipe)).context("writing");
         assert!(is_broken_pipe(&pipe));
-        assert!(!is_broken_pipe(&anyhow::Error::new(io::Error::other("no space"))));
+        assert!(!is_broken_pipe(&anyhow::Error::new(io::Error::other(
+            "no space"
+        ))));
     }
 }

@@ -18,12 +18,20 @@ pub(crate) fn is_stdin(path: &Path) -> bool {
 
 /// What errors and reports call the scene.
 pub(crate) fn name(path: &Path) -> String {
-    if is_stdin(path) { STDIN.to_owned() } else { path.display().to_string() }
+    if is_stdin(path) {
+        STDIN.to_owned()
+    } else {
+        path.display().to_string()
+    }
 }
 
 /// Loads the scene from the file, or from stdin.
 pub(crate) fn load(path: &Path) -> Result<Scene> {
-    if is_stdin(path) { Ok(scene::load_from(STDIN, io::stdin().lock(), Path::new(""))?) } else { Ok(scene::load(path)?) }
+    if is_stdin(path) {
+        Ok(scene::load_from(STDIN, io::stdin().lock(), Path::new(""))?)
+    } else {
+        Ok(scene::load(path)?)
+    }
 }
 
 /// The scene on stdin, or none if nothing is piped in. Its textures are looked for from the current folder.

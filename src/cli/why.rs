@@ -79,7 +79,9 @@ impl ExactRay {
     /// What the object of this number answers, under the screen tolerance τ.
     pub(crate) fn ask(&self, scene: &Scene, object: usize, screen_tolerance: f64) -> Verdict {
         match scene.objects[object].shape {
-            Shape::Plane { normal, point, .. } => self.plane(&ratio3(normal), &ratio3(point), screen_tolerance),
+            Shape::Plane { normal, point, .. } => {
+                self.plane(&ratio3(normal), &ratio3(point), screen_tolerance)
+            }
             Shape::Sphere { center, radius } => self.sphere(&ratio3(center), &ratio(radius)),
         }
     }
@@ -118,7 +120,11 @@ impl ExactRay {
         if !is_positive(&discriminant) {
             return Verdict::Miss(Reason::Passes);
         }
-        if is_positive(&along) { Verdict::Hit } else { Verdict::Miss(Reason::Behind) }
+        if is_positive(&along) {
+            Verdict::Hit
+        } else {
+            Verdict::Miss(Reason::Behind)
+        }
     }
 }
 
@@ -136,7 +142,9 @@ mod tests {
         let scene = plumb::scene::parse("test", text.as_bytes(), Path::new("")).unwrap();
         let ray = ExactRay::new(&scene.camera, 1, 1);
         assert_eq!(ray.world_point(), [1.0, 1.0, 0.0]);
-        (0..scene.objects.len()).map(|i| ray.ask(&scene, i, screen_tolerance)).collect()
+        (0..scene.objects.len())
+            .map(|i| ray.ask(&scene, i, screen_tolerance))
+            .collect()
     }
 
     #[test]

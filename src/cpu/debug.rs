@@ -83,7 +83,12 @@ pub fn list_pixels(
 ///
 /// On a plane perpendicular to an axis that coordinate is the plane's own, exactly; on a sphere the point is found from
 /// the center, where a small sphere that is far away has its bits.
-pub fn hit_point(scene: &Scene, prepared: &Prepared<f64>, traced: &Traced<f64>, hit: &Hit<f64>) -> DVec3 {
+pub fn hit_point(
+    scene: &Scene,
+    prepared: &Prepared<f64>,
+    traced: &Traced<f64>,
+    hit: &Hit<f64>,
+) -> DVec3 {
     let unit = two_to(prepared.camera.scale);
     match scene.objects[hit.object].shape {
         Shape::Plane { normal, point, .. } => {
@@ -98,7 +103,9 @@ pub fn hit_point(scene: &Scene, prepared: &Prepared<f64>, traced: &Traced<f64>, 
         }
         Shape::Sphere { center, .. } => {
             let sphere = &prepared.spheres[hit.index];
-            center + sphere_from_center(&prepared.camera, sphere, &traced.ray, hit.inverse).approx() * unit
+            center
+                + sphere_from_center(&prepared.camera, sphere, &traced.ray, hit.inverse).approx()
+                    * unit
         }
     }
 }
@@ -138,6 +145,9 @@ mod tests {
             assert_eq!(fixed(value, 1), text, "{value}");
         }
         assert_eq!(fixed(-0.004, 2), "0.00");
-        assert_eq!(triple(DVec3::new(1.25, -0.01, -4.0), 1), "(  1.2,   0.0,  -4.0)");
+        assert_eq!(
+            triple(DVec3::new(1.25, -0.01, -4.0), 1),
+            "(  1.2,   0.0,  -4.0)"
+        );
     }
 }

@@ -137,13 +137,13 @@ fn sort_attributes(file: &mut (impl Read + Write + Seek)) -> io::Result<()> {
 
 /// Appends a text with the zero that ends it; returns its length without.
 fn read_name(from: &mut impl Read, to: &mut Vec<u8>) -> io::Result<usize> {
-    for length in 0.. {
+    let start = to.len();
+    loop {
         let mut byte = [0];
         from.read_exact(&mut byte)?;
         to.push(byte[0]);
         if byte[0] == 0 {
-            return Ok(length);
+            return Ok(to.len() - start - 1);
         }
     }
-    unreachable!("the loop above has no end")
 }

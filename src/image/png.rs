@@ -56,9 +56,10 @@ impl Write for Gathered {
 impl Png {
     /// Starts a PNG of `width` × `height` pixels (both at least 1 and below 2³¹) with these texts.
     ///
-    /// Deflate's fastest level behind the Paeth filter: about 1 GB/s and a fifteenth of the size on our pictures. An
-    /// adaptive filter is slower and gains under 1 %; a level more halves the speed for a quarter of the size; the
-    /// encoder that is made for PNG is half as fast again but grows what it cannot compress, and jitter is such.
+    /// Deflate's first level behind the Paeth filter: measured 0.8 to 2 GB/s on one core, and a twelfth to a fiftieth of
+    /// the size, on pictures of ours. Choosing the filter row by row is a sixth slower and gains less than 1 %. The
+    /// second level takes twice as long for three quarters of the size. The encoder made for PNG is half as fast again,
+    /// but its files are a fifth to a half larger, and where it meets noise, which jitter is, larger than the picture.
     pub(super) fn new(width: u32, height: u32, texts: &[(String, String)]) -> io::Result<Self> {
         let gathered = Gathered::default();
         let mut encoder = Encoder::new(gathered.clone(), width, height);

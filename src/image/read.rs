@@ -7,6 +7,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use ::exr::meta::MetaData;
 use ::image::codecs::openexr::OpenExrDecoder;
 use ::image::codecs::png::PngDecoder;
 use ::image::{ColorType, DynamicImage, ImageDecoder, ImageError};
@@ -135,10 +136,10 @@ fn open(path: &Path) -> Result<Picture, Wrong> {
     let length = bytes.len() as u64;
     let bytes = Cursor::new(bytes);
     if png {
-        unpack(PngDecoder::new(bytes)?, length)
-    } else {
-        unpack(OpenExrDecoder::new(bytes)?, length)
+        return unpack(PngDecoder::new(bytes)?, length);
     }
+    check_layers(bytes.get_ref(), length)?;
+    unpack(OpenExrDecoder::new(bytes)?, length)
 }
 
 /// A PPM, from its first byte; `length` is the whole file's, if known.
@@ -188,17 +189,23 @@ fn checked_pixels(width: u32, height: u32) -> Result<u64, Wrong> {
     }
 }
 
+/// Whether `unpacked` bytes, which hold this many pixels, may come out of a file of `length` bytes.
+fn check_growth(width: u64, height: u64, unpacked: u64, length: u64) -> Result<(), Wrong> {
+    if unpacked > length.saturating_mul(MAX_GROWTH) {
+        return Err(Wrong::Picture(format!(
+            "{width} × {height} pixels cannot come out of {length} bytes"
+        )));
+    }
+    Ok(())
+}
+
 /// A PNG or EXR out of a file of `length` bytes.
 fn unpack(mut decoder: impl ImageDecoder, length: u64) -> Result<Picture, Wrong> {
     let (width, height) = decoder.dimensions();
     let pixels = checked_pixels(width, height)?;
     let unpacked = decoder.total_bytes();
     // A pixel may be 1 bit in the file (a palette's index) and 32 when unpacked.
-    if unpacked / 32 > length.saturating_mul(MAX_GROWTH) {
-        return Err(Wrong::Picture(format!(
-            "{width} × {height} pixels cannot come out of {length} bytes"
-        )));
-    }
+    check_growth(u64::from(width), u64::from(height), unpacked / 32, length)?;
     let mut limits = ::image::Limits::no_limits();
     limits.max_alloc = Some(unpacked.saturating_mul(2).max(1 << 26));
     decoder.set_limits(limits)?;
@@ -231,6 +238,25 @@ fn unpack(mut decoder: impl ImageDecoder, length: u64) -> Result<Picture, Wrong>
         return Err("it has another size than its header says".into());
     }
     Ok(Picture { width, height, rgb })
+}
+
+/// Refuses an EXR whose layers claim what cannot be in it. The picture's size, which is checked as for PNG, is another
+/// thing than its layers' sizes, and the library takes memory for these as they are claimed.
+fn check_layers(bytes: &[u8], length: u64) -> Result<(), Wrong> {
+    let headers = MetaData::read_from_buffered(bytes, false)
+        .map_err(|error| Wrong::Picture(error.to_string()))?
+        .headers;
+    for header in headers {
+        let (width, height) = (
+            header.layer_size.width() as u64,
+            header.layer_size.height() as u64,
+        );
+        let claimed = width
+            .saturating_mul(height)
+            .saturating_mul(header.channels.bytes_per_pixel as u64);
+        check_growth(width, height, claimed, length)?;
+    }
+    Ok(())
 }
 
 fn opaque(yes: bool) -> Result<(), Wrong> {

@@ -40,14 +40,13 @@ impl Target {
     /// [`OutputError::UnknownEnding`] for any other name.
     pub fn format(&self) -> Result<Format, OutputError> {
         match self {
-            _ if self.is_stdout() => Ok(Format::Ppm),
-            Self::Stdout => Ok(Format::Ppm),
-            Self::Path(path) => {
+            Self::Path(path) if !self.is_stdout() => {
                 Format::from_path(path).or_else(|unknown| match fs::metadata(path) {
                     Ok(found) if !found.is_file() && !found.is_dir() => Ok(Format::Ppm),
                     _ => Err(unknown),
                 })
             }
+            _ => Ok(Format::Ppm),
         }
     }
 

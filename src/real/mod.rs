@@ -3,9 +3,11 @@
 //! `cpu` is written once, over [`Real`]. A number type says what it knows: a comparison that it cannot decide is
 //! [`Undecided`], never a guess. f64 decides always, and is wrong where its rounding crosses the border.
 
+mod bounded;
 mod float;
 mod vec3;
 
+pub use bounded::Bounded;
 pub use vec3::V3;
 
 use std::cmp::Ordering;

@@ -1,7 +1,7 @@
 //! A scene built in code: the course's "static model", through the same checks as a file.
 //!
 //! In the flow text → lex → parse → [`Scene`] a [`SceneBuilder`] stands in for the first three: it fills the same
-//! drafts, and the rows of the [table](super::table) say what they must keep.
+//! drafts, and the rows of the `table` say what they must keep.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

@@ -1,6 +1,6 @@
 //! An entity while its attributes come in, and the scene while its entities come in.
 //!
-//! The rows of the [table](super::table) say which field of a [`Draft`] an attribute goes to; an [`Assembly`] turns a
+//! The rows of the `table` say which field of a [`Draft`] an attribute goes to; an [`Assembly`] turns a
 //! finished draft into the data model. The listing goes the other way: from the model to a draft, to print row by row.
 //! So this is the last step of text → lex → parse → [`Scene`].
 

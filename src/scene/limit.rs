@@ -1,4 +1,4 @@
-//! What the values of an attribute must keep, and how that is said: a column of the [table](super::table).
+//! What the values of an attribute must keep, and how that is said: a column of the `table`.
 
 /// The largest number of columns or rows of a picture.
 pub const MAX_PIXELDIM: u32 = 1_000_000;
@@ -70,7 +70,7 @@ impl Limit {
             Limit::Pixels => String::from("1 to 1,000,000"),
             Limit::Below(1) => String::from("0, the only one there is"),
             Limit::Below(2) => String::from("0 or 1"),
-            Limit::Below(count) => format!("0 to {}", count - 1),
+            Limit::Below(count) => format!("0 to {}", count.saturating_sub(1)),
             Limit::HalfAngle => String::from("greater than 0 and at most 180 (degrees)"),
             Limit::NotZero => String::from("a direction, not 0 0 0"),
             Limit::InFront => String::from("in front of the screen: its z greater than 0"),

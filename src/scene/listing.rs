@@ -1,7 +1,7 @@
 //! The model listing: the other way round, from a [`Scene`] back to text.
 //!
 //! Camera, materials, textures, objects, lights, each list in file order; an entity is its type and name, then a line
-//! for each row of the [table](super::table), base class first, then an empty line. With `{` after each first line and
+//! for each row of the `table`, base class first, then an empty line. With `{` after each first line and
 //! `}` before each empty one it is a scene again, the same to the last bit: numbers are the shortest text that reads
 //! back as the same f64.
 

@@ -45,6 +45,12 @@ pub enum LoadError {
 /// When the file cannot be read, is too large, or is not a scene without mistakes.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     let fail = |source: io::Error| {
+        // Some systems refuse to open a directory with a reason that misleads.
+        let source = if path.is_dir() {
+            io::ErrorKind::IsADirectory.into()
+        } else {
+            source
+        };
         let hint = if source.kind() == io::ErrorKind::NotFound {
             hint(path)
         } else {

@@ -20,6 +20,8 @@ mod number;
 mod parse;
 mod recover;
 pub mod table;
+#[cfg(test)]
+mod tests;
 mod texture;
 mod values;
 

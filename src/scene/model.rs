@@ -1,7 +1,7 @@
 //! The scene as plain data, in f64, as the file says it: what the parser makes, what a program may build by hand,
 //! and what everything after it reads.
 //!
-//! A `Scene` that went through [`super::parse`] or [`super::SceneBuilder`] keeps every limit of the scene language
+//! A `Scene` that went through [`super::parse()`] or [`super::SceneBuilder`] keeps every limit of the scene language
 //! (docs/SCENE.md); the rest of the program relies on that.
 
 use std::path::PathBuf;

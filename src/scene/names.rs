@@ -4,6 +4,7 @@
 //! use; whether a name that is unknown is defined later is known at the end of the file only, so complaints about
 //! references wait until then.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 use super::errors::Errors;
@@ -12,7 +13,7 @@ use crate::diagnostic::{Diagnostic, quote};
 
 /// The longest word that is searched for, and the number of names, from the first, that are searched.
 const MAX_WORD: usize = 64;
-const MAX_CANDIDATES: usize = 10_000;
+const MAX_CANDIDATES: usize = 1_000;
 
 /// The definitions of one kind, and the references that found none.
 #[derive(Debug)]
@@ -23,6 +24,8 @@ pub(super) struct Names<'t> {
     count: usize,
     /// The first definition of each name: its number, and the token of its name.
     defined: HashMap<&'t [u8], (usize, Token<'t>)>,
+    /// The first names with their numbers: what a reference to nothing may have meant.
+    candidates: Vec<(usize, &'t [u8])>,
     /// Names of entities that were not understood: they may be what a reference means.
     excused: HashSet<&'t [u8]>,
     /// References to nothing so far, each with the number of definitions at that point.
@@ -36,6 +39,7 @@ impl<'t> Names<'t> {
             kind,
             count: 0,
             defined: HashMap::new(),
+            candidates: Vec::new(),
             excused: HashSet::new(),
             unknown: Vec::new(),
         }
@@ -43,10 +47,13 @@ impl<'t> Names<'t> {
 
     /// Counts a definition; without a name nothing can refer to it.
     pub(super) fn define(&mut self, name: Option<Token<'t>>) {
-        if let Some(token) = name {
-            self.defined
-                .entry(token.text)
-                .or_insert((self.count, token));
+        if let Some(token) = name
+            && let Entry::Vacant(entry) = self.defined.entry(token.text)
+        {
+            entry.insert((self.count, token));
+            if self.candidates.len() < MAX_CANDIDATES {
+                self.candidates.push((self.count, token.text));
+            }
         }
         self.count += 1;
     }
@@ -94,11 +101,8 @@ impl<'t> Names<'t> {
                 None => {
                     let error = Diagnostic::new(token.span(), format!("there is no {kind} {name}"));
                     // What is defined later is no good advice.
-                    let before = self
-                        .defined
-                        .iter()
-                        .filter(|(_, (index, _))| *index < MAX_CANDIDATES.min(*known));
-                    match nearest(token.text, before.map(|(name, _)| *name)) {
+                    let before = self.candidates.iter().filter(|(index, _)| index < known);
+                    match nearest(token.text, before.map(|(_, name)| *name)) {
                         Some(meant) => error.help(format!("did you mean {}?", quote(meant))),
                         None if *known == 0 => {
                             error.help(format!("no {kind} is defined before this"))
@@ -130,7 +134,7 @@ pub(super) fn nearest<'c>(
     };
     let distance = |candidate: &&[u8]| {
         let candidate = String::from_utf8_lossy(candidate).to_lowercase();
-        strsim::damerau_levenshtein(&word, &candidate)
+        strsim::osa_distance(&word, &candidate)
     };
     let near = candidates.filter(|candidate| candidate.len().abs_diff(word.len()) <= 2 * limit + 4);
     let near = near.filter(|candidate| candidate.len() <= 2 * MAX_WORD);
@@ -156,7 +160,8 @@ mod tests {
     fn near_words_are_suggested() {
         assert_eq!(meant("tilled_plane"), Some("tiled_plane"));
         assert_eq!(meant("PLANE"), Some("plane"));
-        assert_eq!(meant("sfere"), None);
+        assert_eq!(meant("sfere"), Some("sphere"));
+        assert_eq!(meant("speher"), Some("sphere"));
         assert_eq!(meant("spere"), Some("sphere"));
         assert_eq!(meant("camra"), Some("camera"));
         assert_eq!(meant("materail"), Some("material"));

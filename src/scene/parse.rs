@@ -196,7 +196,7 @@ impl<'t> Parser<'t> {
         } else if first.is_word()
             && second.is_word()
             && third.kind == Lexeme::Open
-            && !self.follows_entity()
+            && !self.meets_entity()
         {
             let error = Diagnostic::new(second.span(), "a name is one word")
                 .label("expected `{`, found another word");
@@ -214,10 +214,10 @@ impl<'t> Parser<'t> {
         self.block(entity, head, name);
     }
 
-    /// Does an entity start after the next token?
-    fn follows_entity(&self) -> bool {
-        let [_, second, third] = &self.window;
-        table::find(second.text).is_some() && third.is_word()
+    /// Does an entity begin with one of the next two tokens, by its type?
+    fn meets_entity(&self) -> bool {
+        let [first, second, third] = &self.window;
+        table::find(first.text).is_some() || (table::find(second.text).is_some() && third.is_word())
     }
 
     /// Is the next token a `}` that is followed by an attribute that the block lacks?

@@ -44,6 +44,10 @@ impl<'t> Parser<'t> {
             self.camera.get_or_insert(head.span());
         }
         let [first, second, _] = self.window;
+        if first.kind == Lexeme::Open {
+            // Perhaps its name, and the type is missing.
+            self.excuse(head);
+        }
         if first.is_word() && second.kind == Lexeme::Open {
             self.excuse(first);
             self.bump();

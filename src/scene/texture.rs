@@ -66,13 +66,14 @@ impl Pictures {
 }
 
 fn read_file(path: &Path) -> Result<Texels, TextureError> {
-    let file = File::open(path).map_err(io_error)?;
-    let metadata = file.metadata().map_err(io_error)?;
-    if metadata.is_dir() {
+    // Asked first, since some systems refuse to open a directory with a reason that misleads.
+    if path.is_dir() {
         return Err(error("is a directory, not a picture"));
     }
+    let file = File::open(path).map_err(io_error)?;
+    let metadata = file.metadata().map_err(io_error)?;
     // Only a regular file has a length to hold the header against; elsewhere memory grows with what arrives.
-    let length = metadata.is_file().then(|| metadata.len());
+    let length = metadata.is_file().then_some(metadata.len());
     read_ppm(&mut BufReader::new(file), length)
 }
 

@@ -1,4 +1,4 @@
-//! The attributes inside a block: looks their rows up in the [table](super::table), reads their values, checks limits.
+//! The attributes inside a block: looks their rows up in the `table`, reads their values, checks limits.
 //!
 //! The inner half of the parser, text → lex → parse → [`Scene`](super::Scene).
 
@@ -125,6 +125,15 @@ impl<'t> Parser<'t> {
             && entity.row(first.text).is_none()
             && meant_row(entity, first.text).is_none()
             && !self.starts_entity(Some(entity))
+    }
+
+    /// Does the next token, a word, look like the next attribute, or the next entity? It does when it resembles one, or
+    /// starts a line and is followed by a number.
+    fn may_be_attribute(&self, entity: &'static Entity) -> bool {
+        let [first, second, _] = &self.window;
+        meant_row(entity, first.text).is_some()
+            || self.starts_entity(Some(entity))
+            || (self.starts_line() && second.is_word() && looks_numeric(second.text))
     }
 
     /// Is the next token the first of its line?
@@ -258,14 +267,10 @@ impl<'t> Parser<'t> {
         while self.window[0].kind == Lexeme::Word {
             let token = self.window[0];
             let count = numbers.tokens.len();
-            // A word that is no number is a wrong value while values lack, unless it looks like the next attribute:
-            // it resembles one, or starts a line.
-            let row_follows = meant_row(block.entity, token.text).is_some()
-                || self.starts_entity(Some(block.entity))
-                || (self.starts_line()
-                    && self.window[1].is_word()
-                    && looks_numeric(self.window[1].text));
-            if !looks_numeric(token.text) && (count >= counts.start || row_follows) {
+            // A word that is no number is a wrong value while values lack, unless it may be the next attribute.
+            if !looks_numeric(token.text)
+                && (count >= counts.start || self.may_be_attribute(block.entity))
+            {
                 break;
             }
             self.bump();
@@ -278,7 +283,7 @@ impl<'t> Parser<'t> {
             match read(token, whole) {
                 Ok(value) => numbers.values[count] = value,
                 Err(error) => {
-                    self.errors.report(error);
+                    self.errors.report(*error);
                     numbers.good = false;
                 }
             }
@@ -348,27 +353,26 @@ fn attributes_of(entity: &Entity) -> String {
 }
 
 /// Reads one number.
-fn read(token: Token<'_>, whole: bool) -> Result<f64, Diagnostic> {
-    let word = token.quoted();
-    if whole && let Ok(value) = number::parse_integer(token.text) {
-        return Ok(value as f64);
-    }
-    let what = if whole { "a whole number" } else { "a number" };
-    let error = match number::parse_number(token.text) {
-        Ok(value) if !whole => return Ok(value),
-        Err(NumberError::NotFinite) => {
-            Diagnostic::new(token.span(), format!("{word} is not a finite number"))
-        }
-        Err(NumberError::TooLarge) if !whole => {
-            Diagnostic::new(token.span(), format!("{word} is too large a number"))
-                .help("the largest is about 1.8e308")
-        }
-        _ => Diagnostic::new(token.span(), format!("{word} is not {what}")),
-    };
-    let comma = token.text.contains(&b',');
-    Err(if comma {
-        error.help("numbers have a decimal point, and white space between them")
+fn read(token: Token<'_>, whole: bool) -> Result<f64, Box<Diagnostic>> {
+    let value = if whole {
+        number::parse_integer(token.text).map(|value| value as f64)
     } else {
-        error
-    })
+        number::parse_number(token.text)
+    };
+    if let Ok(value) = value {
+        return Ok(value);
+    }
+    let word = token.quoted();
+    let error = match number::parse_number(token.text) {
+        Err(NumberError::NotFinite) => format!("{word} is not a finite number"),
+        _ if whole => format!("{word} is not a whole number"),
+        Err(NumberError::TooLarge) => {
+            format!("{word} is too large a number: the largest is about 1.8e308")
+        }
+        _ => format!("{word} is not a number"),
+    };
+    let error = Diagnostic::new(token.span(), error);
+    let comma = token.text.contains(&b',');
+    let help = "numbers have a decimal point, and white space between them";
+    Err(Box::new(if comma { error.help(help) } else { error }))
 }

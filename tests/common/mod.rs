@@ -1,0 +1,46 @@
+//! What several tests need: our scenes, and a picture of one.
+#![allow(dead_code, reason = "every test uses a part")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+use plumb::render::{Backend, Report, Settings, render};
+use plumb::scene::{Scene, load};
+
+/// The folder `scenes/`.
+pub(crate) fn scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
+}
+
+/// The scenes of ours that are right, by folder and name.
+pub(crate) fn good_scenes() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for folder in ["notes", "gallery", "known", "hard"] {
+        let entries = std::fs::read_dir(scenes().join(folder)).unwrap();
+        found.extend(entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "txt")));
+    }
+    found.sort();
+    assert!(found.len() > 100, "only {} scenes found", found.len());
+    found
+}
+
+/// Reads a scene that has to be right.
+pub(crate) fn read(path: &Path) -> Scene {
+    load(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Renders a whole picture; top row first, three bytes a pixel.
+pub(crate) fn picture(scene: &Scene, settings: &Settings) -> (Vec<u8>, Report) {
+    let mut rgb = Vec::new();
+    let report = render(scene, settings, &mut |band| {
+        rgb.extend_from_slice(&band.rgb);
+        Ok(())
+    })
+    .unwrap_or_else(|error| panic!("{error}"));
+    (rgb, report)
+}
+
+/// Settings for one backend.
+pub(crate) fn on(backend: Backend) -> Settings {
+    Settings { backend, ..Settings::default() }
+}
