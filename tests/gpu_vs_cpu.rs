@@ -17,7 +17,7 @@ const BEYOND_F32: &[(&str, f64)] = &[
     // Tile edges run through rows of pixels: exact ties, moved by the 10⁻¹⁷ that 0.001 and 10¹⁶ differ from their doubles.
     ("light_years", 1.0),
     ("millimetres", 1.0),
-    // t is a Pythagorean number but for a slope of 10⁻⁹: a byte's border passes within 10⁻⁹ of the value.
+    // A screen 10⁻⁶ high before a grazing plane: rows whose values miss a byte's border by 10⁻⁷.
     ("plane_grazing_extreme", 1.5),
     // Planes 5·10⁻³²⁴ apart.
     ("plane_z_around_zero", 100.0),

@@ -144,7 +144,7 @@ fn what_is_not_used_is_not_there() {
         ("plane_hits", &|i| {
             matches!(i, Plane | PlaneAcrossTheScreen | Tiled | Pplane(_) | ManyPlanes)
         }),
-        ("front.x", &|i| i == PlaneAcrossTheScreen),
+        ("plane.front.x *", &|i| i == PlaneAcrossTheScreen),
         ("small_sphere_hits", &|i| matches!(i, SmallSphere | SmallPsphere(_) | ManySpheres)),
         ("wide_sphere_hits", &|i| matches!(i, WideSphere | WidePsphere(_))),
         ("bvh", &|i| i == ManySpheres),

@@ -179,6 +179,10 @@ pub(crate) fn main() -> ExitCode {
 /// Ctrl-C, SIGTERM or SIGHUP: nothing half done remains.
 fn interrupted() {
     plumb::image::remove_unfinished();
+    if progress::is_shown() {
+        // The shell's prompt gets a line of its own.
+        say::talk("\n");
+    }
     process::exit(INTERRUPTED);
 }
 

@@ -1,12 +1,21 @@
 //! A bar on stderr for renderings that take a while, where somebody may be watching.
 
 use std::io::{self, IsTerminal};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Work shorter than this shows nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Whether a bar stands on the terminal now, for who ends the process without taking it away.
+static SHOWN: AtomicBool = AtomicBool::new(false);
+
+/// Whether a bar stands on the terminal now.
+pub(crate) fn is_shown() -> bool {
+    SHOWN.load(Ordering::Relaxed)
+}
 
 /// Rows done, of all rows.
 pub(crate) struct Progress {
@@ -34,6 +43,7 @@ impl Progress {
         self.bar.inc(rows);
         if self.pending.is_some_and(|when| Instant::now() >= when) {
             self.pending = None;
+            SHOWN.store(true, Ordering::Relaxed);
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
     }
@@ -41,5 +51,6 @@ impl Progress {
     /// Takes the bar away, whatever came of the work.
     pub(crate) fn clear(&self) {
         self.bar.finish_and_clear();
+        SHOWN.store(false, Ordering::Relaxed);
     }
 }

@@ -1,0 +1,11 @@
+//! The program as it is used: what it reads, what it prints where, which exit code it ends with, what it leaves behind.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod basics;
+mod desk;
+mod endings;
+mod errors;
+mod gpu;
+mod inspect;
+mod options;

@@ -1,0 +1,204 @@
+//! What the options of `plumb render` change, and which of their values are refused.
+
+use std::fs;
+
+use sha2::{Digest, Sha256};
+
+use super::desk::{Desk, ROOM, ppm, scenes};
+
+#[test]
+fn the_size_is_in_place_of_pixeldim() {
+    let desk = Desk::new();
+    let picture = desk
+        .run(&[
+            "render",
+            "room.txt",
+            "-o",
+            "-",
+            "--size",
+            "7x5",
+            "--backend",
+            "cpu",
+        ])
+        .ends(0);
+    assert_eq!((ppm(&picture.stdout).0, ppm(&picture.stdout).1), (7, 5));
+    desk.write("small.txt", &ROOM.replace("pixeldim 40 30", "pixeldim 7 5"));
+    let small = desk
+        .run(&["render", "small.txt", "-o", "-", "--backend", "cpu"])
+        .ends(0);
+    assert_eq!(picture.stdout, small.stdout);
+    assert!(
+        desk.run(&["dump", "room.txt", "--size", "7x5"])
+            .ends(0)
+            .text()
+            .contains("7  5")
+    );
+    let (a, b) = (
+        desk.run(&["probe", "room.txt", "6", "4", "--size", "7x5"]),
+        desk.run(&["probe", "small.txt", "6", "4"]),
+    );
+    assert_eq!(a.ends(0).text().replace("room", "small"), b.ends(0).text());
+}
+
+#[test]
+fn rows_glued_together_are_the_whole() {
+    let desk = Desk::new();
+    let render = |rows: &[&str]| {
+        let args = [&["render", "room.txt", "-o", "-", "--backend", "cpu"], rows].concat();
+        desk.run(&args).ends(0).stdout
+    };
+    let whole = render(&[]);
+    let mut glued = Vec::new();
+    for (rows, height) in [("17..30", 13), ("16..17", 1), ("0..16", 16)] {
+        let piece = render(&["--rows", rows]);
+        let (width, rows, bytes) = ppm(&piece);
+        assert_eq!((width, rows), (40, height));
+        glued.extend_from_slice(bytes);
+    }
+    assert_eq!(ppm(&whole).2, glued);
+}
+
+#[test]
+fn option_values_that_make_no_sense_are_refused_with_the_mend() {
+    let desk = Desk::new();
+    let cases: [(&[&str], &str); 14] = [
+        (&["--rows", "0..31"], "at most 30"),
+        (&["--rows", "5..5"], "less than B"),
+        (&["--rows", "5"], "like 0..120"),
+        (&["--size", "640"], "like 640x480"),
+        (&["--size", "0x1"], "1 to 1000000"),
+        (&["--size", "1000001x1"], "1 to 1000000"),
+        (&["--threads", "0"], "from 1"),
+        (&["--screen-tolerance", "nan"], "finite"),
+        (&["--backend", "cuda"], "auto, gpu, cpu"),
+        (&["--backend", "cpu", "--adapter", "x"], "--backend cpu"),
+        (&["--debug", "pix,hot"], "hit"),
+        (&["-o", "a.jpg"], ".png"),
+        (&["-o", "missing/a.ppm"], "does not exist"),
+        (&["-o", "."], "folder"),
+    ];
+    for (args, mend) in cases {
+        desk.run(&[&["render", "room.txt"], args].concat())
+            .fails_with(&[mend]);
+    }
+    assert_eq!(desk.names(), ["room.txt"]);
+}
+
+#[test]
+fn the_scene_is_not_overwritten() {
+    let desk = Desk::new();
+    fs::rename(desk.path("room.txt"), desk.path("room.ppm")).unwrap();
+    desk.run(&["render", "room.ppm"])
+        .fails_with(&["the scene itself"]);
+    desk.run(&["render", "room.ppm", "-o", "./room.ppm"])
+        .fails_with(&["the scene itself"]);
+    assert_eq!(desk.read("room.ppm"), ROOM.as_bytes());
+}
+
+#[test]
+fn the_report_is_json_and_knows_the_hash() {
+    let desk = Desk::new();
+    let ran = desk
+        .run(&[
+            "render",
+            "room.txt",
+            "--backend",
+            "cpu",
+            "--json",
+            "--rows",
+            "3..10",
+        ])
+        .ends(0);
+    assert_eq!(ran.stderr, "");
+    let json: serde_json::Value = serde_json::from_slice(&ran.stdout).unwrap();
+    let hash: String = Sha256::digest(desk.read("room.ppm"))
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    assert_eq!(json["sha256"], hash);
+    assert_eq!(
+        (&json["scene"], &json["output"]),
+        (&"room.txt".into(), &"room.ppm".into())
+    );
+    assert_eq!(
+        (&json["backend"], &json["rows"]),
+        (&"cpu".into(), &serde_json::json!([3, 10]))
+    );
+    assert_eq!(json["bytes"], desk.read("room.ppm").len());
+    // With the picture on stdout the report is on stderr, alone.
+    let ran = desk.pipe(&["--backend", "cpu", "--json"], ROOM).ends(0);
+    let json: serde_json::Value = serde_json::from_str(&ran.stderr).unwrap();
+    assert_eq!(json["output"], "stdout");
+    assert_eq!(ppm(&ran.stdout).1, 30);
+}
+
+#[test]
+fn a_png_tells_what_changes_its_bytes_and_nothing_else() {
+    let desk = Desk::new();
+    let render = |out: &str, scene: &str| {
+        desk.run(&[
+            "render",
+            scene,
+            "--backend",
+            "cpu",
+            "-o",
+            out,
+            "--rows",
+            "1..9",
+            "--size",
+            "20x10",
+        ])
+        .ends(0);
+        desk.read(out)
+    };
+    fs::create_dir(desk.path("sub")).unwrap();
+    desk.write("sub/room.txt", ROOM);
+    let png = render("a.png", "room.txt");
+    assert_eq!(png, render("b.png", "sub/room.txt"));
+    let has = |text: &str| {
+        png.windows(text.len())
+            .any(|window| window == text.as_bytes())
+    };
+    for text in [
+        "Software\0",
+        concat!("plumb ", env!("CARGO_PKG_VERSION")),
+        "plumb:scene",
+        "room.txt",
+        "20x10",
+        "1..9",
+    ] {
+        assert!(has(text), "{text}");
+    }
+    assert!(!has("sub/"));
+}
+
+#[test]
+fn the_debug_listing_is_on_stderr_and_keeps_to_the_rows() {
+    let desk = Desk::new();
+    let scene = scenes().join("notes/debug.txt");
+    let args = [
+        "render",
+        scene.to_str().unwrap(),
+        "--backend",
+        "cpu",
+        "--debug",
+        "pix,hit",
+        "--rows",
+        "16..17",
+        "-o",
+        "-",
+        "-q",
+    ];
+    let ran = desk.run(&args).ends(0);
+    assert_eq!(ppm(&ran.stdout).1, 1);
+    let lines: Vec<&str> = ran.stderr.split('\n').collect();
+    assert_eq!((lines.len(), lines[0], lines[65]), (66, "", ""));
+    assert_eq!(
+        lines[22],
+        "PIX   21   16 - leftwall     HIT:(  1.3,   1.4,  -4.0)"
+    );
+    assert_eq!(
+        lines[41],
+        "PIX   40   16 - rightwall    HIT:(  6.4,   1.2,  -4.8)"
+    );
+}
