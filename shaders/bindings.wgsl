@@ -14,25 +14,48 @@ struct Job {
 // Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
 @group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
 //#end
-//#if objects
+//#if any_object
 // One for each object of the scene, in file order.
 @group(0) @binding(2) var<storage, read> objects: array<Object>;
 //#end
 //#if plane_loop
 @group(0) @binding(3) var<storage, read> planes: array<Plane>;
 //#end
-//#if bvh
-@group(0) @binding(8) var<storage, read> bvh: array<BvhNode>;
+//#if rectangle_loop
+@group(0) @binding(4) var<storage, read> rectangles: array<Rectangle>;
 //#end
 //#if small_sphere_buffer
-@group(0) @binding(4) var<storage, read> small_spheres: array<SmallSphere>;
+@group(0) @binding(5) var<storage, read> small_spheres: array<SmallSphere>;
 //#end
 //#if wide_sphere_buffer
-@group(0) @binding(5) var<storage, read> wide_spheres: array<WideSphere>;
+@group(0) @binding(6) var<storage, read> wide_spheres: array<WideSphere>;
+//#end
+//#if bvh
+@group(0) @binding(7) var<storage, read> bvh: array<BvhNode>;
 //#end
 //#if tiled
-@group(0) @binding(6) var<storage, read> tiled_planes: array<Tiled>;
+@group(0) @binding(8) var<storage, read> tiled_planes: array<Tiled>;
 //#end
 //#if pplane
-@group(0) @binding(7) var<storage, read> pplanes: array<Pplane>;
+@group(0) @binding(9) var<storage, read> pplanes: array<Pplane>;
+//#end
+//#if textured
+@group(0) @binding(10) var<storage, read> texplanes: array<Texplane>;
+// Red, green, blue from the lowest byte up; all textures one after the other, bottom rows first.
+@group(0) @binding(11) var<storage, read> texels: array<u32>;
+//#end
+//#if lit
+@group(0) @binding(12) var<storage, read> materials: array<Material>;
+@group(0) @binding(13) var<storage, read> lights: array<Light>;
+// Where the objects are for rays from anywhere; each object of the scene knows its place in one of these.
+//#end
+//#if world_planes
+@group(0) @binding(14) var<storage, read> world_planes: array<WorldPlane>;
+//#end
+//#if world_spheres
+@group(0) @binding(15) var<storage, read> world_spheres: array<WorldSphere>;
+//#end
+//#if course
+// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
+@group(0) @binding(16) var<storage, read> offsets: array<vec2f>;
 //#end

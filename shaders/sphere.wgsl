@@ -20,7 +20,7 @@ struct SmallSphere {
 
 // W − W_c on the screen: how far the ray passes from the projected center.
 fn small_sphere_offset(sphere: SmallSphere, ray: Ray) -> vec2f {
-    return vec2f(ray.pixel - sphere.anchor) * CAMERA_STEP + sphere.offset;
+    return from_pixel(ray, sphere.anchor) * CAMERA_STEP + sphere.offset;
 }
 
 // (r² − |perpendicular|²)·W·W / |C|²: > 0 where the ray's line meets the sphere. Both terms keep their relative accuracy.
@@ -76,5 +76,32 @@ fn wide_sphere_hits(sphere: WideSphere, ray: Ray) -> f32 {
 // H − C at the nearer hit.
 fn wide_sphere_from_center(sphere: WideSphere, ray: Ray, inverse: f32) -> vec3f {
     return ray.w / inverse - sphere.distance * sphere.toward;
+}
+//#end
+//#if lit
+
+// A sphere for rays from anywhere; its center is from the viewpoint.
+struct WorldSphere {
+    center: vec3f,
+    radius: f32,
+    group: u32,
+    object: u32,
+    // Bit i: light i lies on the sphere.
+    level: u32,
+    // Its number among the small spheres plus one; 0 for none.
+    seen: u32,
+}
+
+// t of the nearer hit, by the perpendicular from the center to the ray; 0 for a miss. `dir` is of unit length.
+fn sphere_hits_from(sphere: WorldSphere, base: vec3f, dir: vec3f, range: Range) -> f32 {
+    let to_center = sphere.center - base;
+    let along = dot(to_center, dir);
+    let perpendicular = to_center - along * dir;
+    let disc = sphere.radius * sphere.radius - dot(perpendicular, perpendicular);
+    let t = along - sqrt(max(disc, 0.0));
+    // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
+    let at_light = (sphere.level & range.light) != 0u && range.limit < along;
+    let hit = disc > 0.0 && along > 0.0 && t > range.beyond && t < range.limit && sphere.group != range.skip && !at_light;
+    return select(0.0, t, hit);
 }
 //#end

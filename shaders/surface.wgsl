@@ -1,11 +1,64 @@
 // The reflectivity of an object at a hit. Twin: src/cpu/surface.rs.
 
+//#if lit
+struct Object {
+    // Index of the material.
+    material: u32,
+    // What modulates it: KIND_… in the low byte, the index of its record above.
+    kind: u32,
+    // Number of the surface that the object is or is part of.
+    group: u32,
+    // Index into `world_planes`, or into `world_spheres` with the highest bit set.
+    place: u32,
+}
+
+struct Material {
+    ambient: vec3f,
+    transparency: f32,
+    diffuse: vec3f,
+    // 0 where there is no glint.
+    shininess: f32,
+    specular: vec3f,
+    unused_0: u32,
+    // What tints light that goes through.
+    tint: vec3f,
+    unused_1: u32,
+}
+//#else
 struct Object {
     // The material's ambient reflectivity.
     ambient: vec3f,
     // What modulates it: KIND_… in the low byte, the index of its record above.
     kind: u32,
 }
+//#end
+
+// A hit point.
+struct Point {
+    object: u32,
+    // From the viewpoint.
+    position: vec3f,
+//#if from_center
+    // H − center, on a sphere.
+    from_center: vec3f,
+//#end
+//#if lit
+    // Of unit length.
+    normal: vec3f,
+    group: u32,
+//#end
+//#if level
+    // Bit i: light i lies in the plane of the point.
+    level: u32,
+//#end
+}
+//#if lit
+
+// The length of a vector; no component may overflow when squared.
+fn length3(v: vec3f) -> f32 {
+    return sqrt(dot(v, v));
+}
+//#end
 //#if odd
 
 // 1 where the integers are odd, 0 where they are even.
@@ -16,19 +69,24 @@ fn odd3(index: vec3f) -> vec3f {
 //#if tiled
 
 struct Tiled {
-    // Tile indices along x and z: floor(P·per_unit + fraction), up to `parity`.
-    per_unit: vec2f,
-    fraction: vec2f,
+    // Tile indices along both directions: floor(row_i·P + fraction_i), up to `parity`.
+    row_0: vec3f,
+    fraction_0: f32,
+    row_1: vec3f,
+    fraction_1: f32,
+    // The other material's ambient reflectivity, and its index.
     altmaterial: vec3f,
-    // The two host-side parities together: 0, 1 or 2.
+    altindex: u32,
+    // The host's parities together, 0 to 3: tiles whose sum is odd have the other material.
     parity: f32,
+    unused: vec3f,
 }
 
 // Whether a tile is of the plane's own material.
 fn tplane_foreground(plane: Tiled, position: vec3f) -> bool {
-    let index = floor(position.xz * plane.per_unit + plane.fraction);
-    let odd = odd3(vec3f(index, 0.0));
-    return odd3(vec3f(odd.x + odd.y + plane.parity)).x == 0.0;
+    let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
+    let odd = odd3(vec3f(floor(index), plane.parity));
+    return odd3(vec3f(odd.x + odd.y + odd.z)).x == 0.0;
 }
 //#end
 //#if pplane
@@ -66,6 +124,34 @@ fn pplane_from_point(at: PlanePoint) -> vec2f {
     return at.position.xy * at.plane.from_point.xy - at.plane.from_point.zw;
 }
 //#end
+//#if textured
+
+struct Texplane {
+    // Texel column and row: floor(row_i·P − origin_i).
+    row_0: vec3f,
+    origin_0: f32,
+    row_1: vec3f,
+    origin_1: f32,
+    // Columns and rows of the texture, and its first texel in `texels`.
+    size: vec2u,
+    first: u32,
+    // 1 where the picture repeats, 0 where it is stretched.
+    repeats: u32,
+}
+
+// The texel at a point of a texplane, each channel byte/256.
+fn texel(plane: Texplane, position: vec3f) -> vec3f {
+    var p = floor(vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1));
+    let size = vec2f(plane.size);
+    if plane.repeats != 0u {
+        p -= size * floor(p / size);
+    }
+    // The remainder of a rounded quotient may be off by one turn; an edge may be overshot.
+    let place = vec2u(clamp(p, vec2f(0.0), size - 1.0));
+    let packed = texels[plane.first + place.y * plane.size.x + place.x];
+    return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) / 256.0;
+}
+//#end
 //#if psphere
 
 // What a procedural sphere's shader is told about the hit.
@@ -92,21 +178,57 @@ const HALF_ROOT_3 = 0.86602540378443864676f;
 //#end
 //#insert procedural
 
-// The ambient reflectivity at a hit.
-fn getamb(ray: Ray, hit: Hit) -> vec3f {
-    let object = objects[hit.object];
+//#if lit
+// The material at a point: of a tiled plane, that of the tile.
+fn tile_material(point: Point) -> u32 {
+    let object = objects[point.object];
+//#if tiled
+    if (object.kind & 255u) == KIND_TILED {
+        let plane = tiled_planes[object.kind >> 8u];
+        return select(plane.altindex, object.material, tplane_foreground(plane, point.position));
+    }
+//#end
+    return object.material;
+}
+
+// The diffuse reflectivity at a point.
+fn getdiff(point: Point) -> vec3f {
+    let diffuse = materials[tile_material(point)].diffuse;
+//#if textured
+    let object = objects[point.object];
+    if (object.kind & 255u) == KIND_TEXTURED {
+        return diffuse * texel(texplanes[object.kind >> 8u], point.position);
+    }
+//#end
+    return diffuse;
+}
+
+//#end
+// The ambient reflectivity at a point.
+fn getamb(point: Point) -> vec3f {
+    let object = objects[point.object];
+//#if lit
+    let ambient = materials[tile_material(point)].ambient;
+//#else
+    let ambient = object.ambient;
+//#end
 //#if modulated
     let record = object.kind >> 8u;
     switch object.kind & 255u {
-//#if tiled
+//#if tiled_ambient
         case KIND_TILED: {
             let plane = tiled_planes[record];
-            return select(plane.altmaterial, object.ambient, tplane_foreground(plane, ray.w / hit.inverse));
+            return select(plane.altmaterial, ambient, tplane_foreground(plane, point.position));
+        }
+//#end
+//#if textured
+        case KIND_TEXTURED: {
+            return ambient * texel(texplanes[record], point.position);
         }
 //#end
 //#insert procedural_cases
         default: {}
     }
 //#end
-    return object.ambient;
+    return ambient;
 }

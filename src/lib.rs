@@ -16,6 +16,7 @@
 
 pub mod diagnostic;
 pub mod scene;
+pub mod jitter;
 pub mod prepare;
 pub mod real;
 pub mod cpu;

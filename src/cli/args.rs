@@ -8,12 +8,15 @@ use anyhow::{Result, bail};
 use clap::ValueEnum;
 use clap::builder::NonEmptyStringValueParser;
 use plumb::cpu::debug::Shown;
-use plumb::render::{Backend, Settings};
+use plumb::cpu::trace::Limits;
+use plumb::render::{Backend, Settings, Spread};
 use plumb::scene::Scene;
 
 /// The most pixels a side, as `pixeldim` has it.
 const MOST_PIXELS: u32 = 1_000_000;
 /// More threads than any machine has; a typing error is told here, not by the system running out of them.
+/// More samples than this show nothing more, and take hours.
+const MOST_SAMPLES: i64 = 65_536;
 const MOST_THREADS: usize = 4096;
 
 /// What changes which picture a scene is.
@@ -25,6 +28,18 @@ pub(crate) struct PictureOptions {
     /// Planes count only where z ≤ T: 0 in the notes, 0.01 in the course's final program
     #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) screen_tolerance: f64,
+    /// Rays a pixel: 1 through its middle; more are spread over it, and their mean is taken
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=MOST_SAMPLES))]
+    pub(crate) samples: u32,
+    /// How several samples are spread: by a hash, or as the course's program did (which 16 samples reproduce)
+    #[arg(long, value_name = "SPREAD", value_enum, default_value_t)]
+    pub(crate) jitter: JitterName,
+    /// A mirror image or a ray that goes through is not followed from farther than D along its path
+    #[arg(long, value_name = "D", default_value_t = Limits::default().max_path, value_parser = path)]
+    pub(crate) max_path: f64,
+    /// A sample that needs more rays than this (mirrors and transparent surfaces multiply them) is an error
+    #[arg(long, value_name = "N", default_value_t = Limits::default().max_rays, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) max_rays: u32,
 }
 
 impl PictureOptions {
@@ -39,8 +54,16 @@ impl PictureOptions {
     pub(crate) fn settings(&self) -> Settings {
         Settings {
             screen_tolerance: self.screen_tolerance,
+            samples: self.samples,
+            jitter: self.jitter.into(),
+            limits: self.limits(),
             ..Settings::default()
         }
+    }
+
+    /// How far rays are followed.
+    pub(crate) fn limits(&self) -> Limits {
+        Limits { max_path: self.max_path, max_rays: self.max_rays, ..Limits::default() }
     }
 }
 
@@ -111,13 +134,16 @@ impl RenderOptions {
                 "--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out"
             );
         }
+        if self.picture.samples > 1 && !self.debug.is_empty() {
+            bail!("--debug lists the ray through the middle of a pixel, and --samples takes others: leave one of them out");
+        }
         Ok(Settings {
             rows: self.rows.clone(),
-            screen_tolerance: self.picture.screen_tolerance,
             backend: self.backend.into(),
             adapter: self.adapter.clone(),
             threads: self.threads,
             values,
+            ..self.picture.settings()
         })
     }
 
@@ -149,6 +175,23 @@ impl From<BackendName> for Backend {
             BackendName::Auto => Self::Auto,
             BackendName::Gpu => Self::Gpu,
             BackendName::Cpu => Self::Cpu,
+        }
+    }
+}
+
+/// How samples are spread, by name on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum JitterName {
+    #[default]
+    Hash,
+    Course,
+}
+
+impl From<JitterName> for Spread {
+    fn from(name: JitterName) -> Self {
+        match name {
+            JitterName::Hash => Self::Hash,
+            JitterName::Course => Self::Course,
         }
     }
 }
@@ -202,6 +245,12 @@ fn rows(text: &str) -> Result<Range<u32>, String> {
 fn tolerance(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| "say a finite number, like 0.01".to_owned())
+}
+
+/// A length of a path.
+fn path(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| *number >= 0.0);
+    number.ok_or_else(|| "say a number that is not negative, like 20".to_owned())
 }
 
 /// At least one thread.

@@ -41,9 +41,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut scene = source::load(&args.scene)?;
     args.picture.apply(&mut scene);
     let settings = args.picture.settings();
-    if args.stage != Stage::Model {
-        source::check_renderable(&scene, &source::name(&args.scene))?;
-    }
     match args.stage {
         Stage::Model => say::stream(|to| list_model(&scene, to))?,
         Stage::Features => say::data(&describe::features(&scene, &settings))?,

@@ -8,7 +8,7 @@ use plumb::cpu::camera::{Ray, camera_getdir, camera_setpix, inverse_distance};
 use plumb::cpu::debug::hit_point;
 use plumb::cpu::plane::plane_hits;
 use plumb::cpu::sphere::sphere_hits;
-use plumb::cpu::trace::{Hit, Traced, ray_trace};
+use plumb::cpu::trace::{Hit, Limits, Traced, Unwatched, ray_trace};
 use plumb::prepare::Prepared;
 use plumb::real::{Undecided, V3};
 use plumb::scene::Scene;
@@ -46,7 +46,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut scene = source::load(&args.scene)?;
     args.picture.apply(&mut scene);
     let name = source::name(&args.scene);
-    source::check_renderable(&scene, &name)?;
     let [width, height] = scene.camera.pixeldim;
     let inside = |at: i64, pixels: u32| u32::try_from(at).ok().filter(|at| *at < pixels);
     let (Some(x), Some(y)) = (inside(args.x, width), inside(args.y, height)) else {
@@ -95,7 +94,7 @@ impl<'a> Probe<'a> {
 
     fn text(&self, name: &str, all: bool) -> Result<String, Undecided> {
         let [width, height] = self.scene.camera.pixeldim;
-        let traced = ray_trace(&self.prepared, f64::from(self.x), f64::from(self.y))?;
+        let traced = ray_trace(&self.prepared, &Limits::default(), f64::from(self.x), f64::from(self.y), &mut Unwatched).map_err(|_| Undecided)?;
         let length = self.ray.w2.sqrt();
         let direction = self.ray.w.approx().to_array().map(|w| w / length);
         let mut text = String::new();

@@ -161,7 +161,7 @@ impl<'a> Job<'a> {
                 }
             }
         }
-        source::check_renderable(&self.scene, self.name)
+        Ok(())
     }
 
     fn run(&self) -> Result<Answer> {
@@ -222,18 +222,22 @@ impl<'a> Job<'a> {
             .unwrap_or(OsStr::new(self.name));
         let [width, height] = self.scene.camera.pixeldim;
         let entry = |key: &str, text: String| (key.to_owned(), text);
-        Metadata {
-            entries: vec![
-                entry("Software", SOFTWARE.to_owned()),
-                entry("plumb:scene", scene.to_string_lossy().into_owned()),
-                entry("plumb:size", format!("{width}x{height}")),
-                entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
-                entry(
-                    "plumb:screen-tolerance",
-                    self.options.picture.screen_tolerance.to_string(),
-                ),
-            ],
+        let picture = &self.options.picture;
+        let mut entries = vec![
+            entry("Software", SOFTWARE.to_owned()),
+            entry("plumb:scene", scene.to_string_lossy().into_owned()),
+            entry("plumb:size", format!("{width}x{height}")),
+            entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
+            entry("plumb:screen-tolerance", picture.screen_tolerance.to_string()),
+            entry("plumb:samples", picture.samples.to_string()),
+        ];
+        if picture.samples > 1 {
+            entries.push(entry("plumb:jitter", format!("{:?}", picture.jitter).to_lowercase()));
         }
+        if !self.scene.lights.is_empty() {
+            entries.push(entry("plumb:max-path", picture.max_path.to_string()));
+        }
+        Metadata { entries }
     }
 
     /// The error, with what would mend it.
@@ -257,7 +261,7 @@ impl<'a> Job<'a> {
         let prepared = Prepared::new(&self.scene, settings.screen_tolerance);
         let [start, end] = report.rows;
         let mut stderr = io::BufWriter::new(io::stderr().lock());
-        let listed = list_pixels(&self.scene, &prepared, start..end, shown, &mut stderr)
+        let listed = list_pixels(&self.scene, &prepared, &settings.limits, start..end, shown, &mut stderr)
             // The notes' listing begins lines and ends none; what follows begins one of its own.
             .and_then(|()| stderr.write_all(b"\n"))
             .and_then(|()| stderr.flush());

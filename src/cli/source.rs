@@ -5,7 +5,6 @@ use std::io::{self, BufRead};
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use plumb::render;
 use plumb::scene::{self, Scene};
 
 /// What errors and reports call stdin.
@@ -41,14 +40,6 @@ pub(crate) fn load_stdin() -> Result<Option<Scene>> {
         return Ok(None);
     }
     Ok(Some(scene::load_from(STDIN, stdin, Path::new(""))?))
-}
-
-/// Refuses a scene that is read and checked, but not rendered yet.
-pub(crate) fn check_renderable(scene: &Scene, name: &str) -> Result<()> {
-    match render::not_yet(scene) {
-        Some(what) => Err(render::Error::NotYet(what)).with_context(|| name.to_owned()),
-        None => Ok(()),
-    }
 }
 
 /// Whether both names lead to one file that is there.

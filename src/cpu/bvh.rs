@@ -1,23 +1,24 @@
 //! Twin of `shaders/bvh.wgsl`: which of many spheres a ray may hit.
 
-use super::camera::Ray;
-use super::sphere::sphere_hits;
-use super::trace::{Hit, nearer};
-use crate::prepare::Prepared;
-use crate::prepare::bvh::Bvh;
-use crate::real::{Real, Undecided};
+use glam::DVec3;
 
-/// Tests the spheres of the tree that the ray may hit, near boxes first. The boxes are asked in f64, whatever `R` is:
-/// their padding is far wider than an f64's error.
-pub fn bvh_hits<R: Real>(
-    scene: &Prepared<R>,
+use crate::prepare::bvh::Bvh;
+
+/// Calls `test` with the index of each sphere of the tree that the ray from `base` along `dir` may hit, near boxes first,
+/// as long as they are entered no farther than at `reach`. `test` returns the new reach, in units of `dir`.
+///
+/// The boxes are asked in f64, whatever the tracer's number type is: their padding is far wider than an f64's error, and
+/// keeps what is as far as `reach` in.
+pub fn bvh_hits<E>(
     bvh: &Bvh,
-    ray: &Ray<R>,
-    closest: &mut Option<Hit<R>>,
-) -> Result<(), Undecided> {
-    let w = ray.w.approx();
+    base: DVec3,
+    dir: DVec3,
+    mut reach: f64,
+    mut test: impl FnMut(usize) -> Result<f64, E>,
+) -> Result<(), E> {
     // A zero component becomes tiny: the ray stays in its slab or out of it.
-    let inverse = w.to_array().map(|c| 1.0 / if c.abs() < 1e-30 { 1e-30 } else { c });
+    let inverse = dir.to_array().map(|c| 1.0 / if c.abs() < 1e-30 { 1e-30 } else { c });
+    let base = base.to_array();
     let mut stack = Vec::new();
     let mut index = 0;
     loop {
@@ -25,16 +26,11 @@ pub fn bvh_hits<R: Real>(
         let first = node.first as usize;
         let mut next = None;
         if node.count > 0 {
-            for index in first..first + node.count as usize {
-                let sphere = &scene.spheres[index];
-                if let Some(inverse) = sphere_hits(&scene.camera, sphere, ray)? {
-                    nearer(closest, Hit { inverse, object: sphere.object, index })?;
-                }
+            for sphere in first..first + node.count as usize {
+                reach = test(sphere)?;
             }
         } else {
-            // Boxes beyond the closest hit so far cannot hold a nearer one; the padding keeps equal ones in.
-            let reach = closest.as_ref().map_or(f64::INFINITY, |hit| 1.0 / hit.inverse.approx());
-            let enters = |child: usize| bvh.nodes[child].enters(inverse).filter(|&near| near <= reach);
+            let enters = |child: usize| bvh.nodes[child].enters(base, inverse).filter(|&near| near <= reach);
             next = match (enters(first), enters(first + 1)) {
                 (Some(left), Some(right)) => {
                     let left_first = left <= right;

@@ -16,9 +16,10 @@ use glam::DVec3;
 
 use super::camera::camera_setpix;
 use super::sphere::sphere_from_center;
-use super::trace::{Hit, Traced, ray_trace};
+use super::trace::{Fault, Hit, Limits, Traced, Unwatched, ray_trace};
 use crate::prepare::Prepared;
 use crate::prepare::exact::two_to;
+use crate::render::PixelFault;
 use crate::scene::{Scene, Shape};
 
 /// Which parts are listed.
@@ -45,6 +46,7 @@ pub struct Shown {
 pub fn list_pixels(
     scene: &Scene,
     prepared: &Prepared<f64>,
+    limits: &Limits,
     rows: Range<u32>,
     shown: Shown,
     to: &mut dyn io::Write,
@@ -52,8 +54,11 @@ pub fn list_pixels(
     let [width, height] = scene.camera.pixeldim;
     for y in rows {
         for x in 0..width {
-            let undecided = |_| io::Error::other(format!("pixel ({x}, {y}) is out of f64's range"));
-            let traced = ray_trace(prepared, f64::from(x), f64::from(y)).map_err(undecided)?;
+            let fault = |fault: Fault| match fault {
+                Fault::Undecided => io::Error::other(format!("pixel ({x}, {y}) is out of f64's range")),
+                Fault::TooManyRays => io::Error::other(PixelFault { x, y, max_rays: limits.max_rays }),
+            };
+            let traced = ray_trace(prepared, limits, f64::from(x), f64::from(y), &mut Unwatched).map_err(fault)?;
             if shown.pix {
                 write!(to, "\nPIX {x:4} {y:4} - ")?;
             }
@@ -67,7 +72,7 @@ pub fn list_pixels(
                 write!(to, "{name:<12} DRGB:{}", triple(traced.color.approx(), 2))?;
             }
             if shown.irgb {
-                let [r, g, b] = camera_setpix(traced.color).map_err(undecided)?;
+                let [r, g, b] = camera_setpix(traced.color).map_err(|undecided| fault(undecided.into()))?;
                 write!(to, " IRGB:({r:5}, {g:5}, {b:5})")?;
             }
             if shown.offset {

@@ -5,8 +5,11 @@
 pub mod bvh;
 pub mod camera;
 pub mod debug;
+pub mod light;
+pub mod pixel;
 pub mod plane;
 pub mod procedural;
 pub mod sphere;
 pub mod surface;
 pub mod trace;
+pub mod world;

@@ -1,8 +1,11 @@
 //! Twin of `shaders/plane.wgsl`.
 
+use std::cmp::Ordering;
+
 use super::camera::Ray;
 use crate::prepare::Plane;
-use crate::real::{Real, Undecided};
+use crate::prepare::world::WorldPlane;
+use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the hit on the plane, or None for a miss.
 pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
@@ -13,6 +16,53 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
             return Ok(None);
         }
     }
-    let inverse = plane.inverse[0] * ray.w.x + plane.inverse[1] * ray.w.y + plane.inverse[2];
-    Ok(inverse.positive()?.then_some(inverse))
+    let along = |form: &[R; 3]| form[0] * ray.w.x + form[1] * ray.w.y + form[2];
+    let inverse = along(&plane.inverse);
+    if !inverse.positive()? {
+        return Ok(None);
+    }
+    if let Some(sides) = &plane.sides {
+        for (form, dimension) in sides.forms.iter().zip(sides.dimensions) {
+            // 0 ≤ p ≤ d, all times 1/s.
+            let p = along(form);
+            if !p.non_negative()? || !(dimension * inverse - p).non_negative()? {
+                return Ok(None);
+            }
+        }
+    }
+    Ok(Some(inverse))
+}
+
+/// t of the hit on the plane for a ray from anywhere, and its position; None for a miss. `highest` is the rule H.z ≤ τ.
+pub fn plane_hits_from<R: Real>(
+    plane: &WorldPlane<R>,
+    base: V3<R>,
+    dir: V3<R>,
+    highest: R,
+) -> Result<Option<(R, V3<R>)>, Undecided> {
+    let across = plane.normal.dot(dir);
+    if across.sign()? == Ordering::Equal {
+        return Ok(None);
+    }
+    let t = (plane.offset - plane.normal.dot(base)) / across;
+    if !t.positive()? {
+        return Ok(None);
+    }
+    let position = on_plane(plane, base + dir * t);
+    if !(highest - position.z).non_negative()? {
+        return Ok(None);
+    }
+    if let Some(extent) = &plane.extent {
+        for (p, dimension) in extent.coordinates(position).into_iter().zip(extent.dimensions) {
+            if !p.non_negative()? || !(dimension - p).non_negative()? {
+                return Ok(None);
+            }
+        }
+    }
+    Ok(Some((t, position)))
+}
+
+/// A hit point with the coordinate that all points of the plane share, if there is one, set to exactly that.
+pub fn on_plane<R: Real>(plane: &WorldPlane<R>, position: V3<R>) -> V3<R> {
+    plane.own.map_or(position, |(axis, own)| position.with_axis(axis, own))
 }

@@ -1,6 +1,7 @@
 //! Twin of `shaders/sphere.wgsl`.
 
 use super::camera::Ray;
+use crate::prepare::world::WorldSphere;
 use crate::prepare::{Camera, Sphere};
 use crate::real::{Real, Undecided, V3};
 
@@ -32,6 +33,27 @@ fn sphere_offset<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) 
     let axis =
         |i: usize| R::exact(ray.pixel[i] - f64::from(seen.anchor[i])) * camera.step[i] + seen.offset[i];
     Some([axis(0), axis(1)])
+}
+
+/// t of the nearer hit on the sphere for a ray from anywhere, of unit direction; None for a miss, and for a ray that
+/// starts inside.
+pub fn sphere_hits_from<R: Real>(
+    sphere: &WorldSphere<R>,
+    base: V3<R>,
+    dir: V3<R>,
+) -> Result<Option<R>, Undecided> {
+    let to_center = sphere.center - base;
+    let along = to_center.dot(dir);
+    if !along.positive()? {
+        return Ok(None);
+    }
+    let perpendicular = to_center - dir * along;
+    let disc = sphere.radius * sphere.radius - perpendicular.dot(perpendicular);
+    if !disc.positive()? {
+        return Ok(None);
+    }
+    let t = along - disc.sqrt();
+    Ok(t.positive()?.then_some(t))
 }
 
 /// H − C at the nearer hit, in units of 2^scale.

@@ -1,10 +1,7 @@
 //! Twin of `shaders/surface.wgsl`: the reflectivity of an object at a hit.
 
-use super::camera::Ray;
 use super::procedural;
-use super::sphere::sphere_from_center;
-use super::trace::Hit;
-use crate::prepare::surface::{Pplane, Tiled};
+use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::prepare::{Prepared, Surface};
 use crate::real::{Real, Undecided, V3};
 
@@ -41,29 +38,74 @@ pub struct SpherePoint<R> {
     pub ambient: V3<R>,
 }
 
-/// The ambient reflectivity at a hit.
-pub fn getamb<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Result<V3<R>, Undecided> {
-    let ambient = scene.ambient[scene.materials[hit.object]];
-    let position = || ray.w * (R::exact(1.0) / hit.inverse);
-    match &scene.surfaces[hit.object] {
-        Surface::Plain => Ok(ambient),
-        Surface::Tiled(tiled) => {
-            let foreground = tplane_foreground(tiled, position())?;
-            Ok(if foreground { ambient } else { scene.ambient[tiled.altmaterial] })
-        }
-        Surface::Pplane(plane) => {
-            procedural::pplane(plane.shader, &PlanePoint { position: position(), ambient, plane })
-        }
-        Surface::Psphere(shader) => {
-            let from_center = sphere_from_center(&scene.camera, &scene.spheres[hit.index], ray, hit.inverse);
-            procedural::psphere(*shader, &SpherePoint { from_center, ambient })
-        }
+/// A hit point, with what its surface's looks depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<R> {
+    /// Index of the object.
+    pub object: usize,
+    /// The hit point from the viewpoint, in units of 2^scale.
+    pub position: V3<R>,
+    /// H − center on a sphere, in the same units; zero on a plane.
+    pub from_center: V3<R>,
+}
+
+/// The material at a hit: of a tiled plane, that of the tile.
+pub fn tile_material<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<usize, Undecided> {
+    match &scene.surfaces[at.object] {
+        Surface::Tiled(tiled) => Ok(tiled.materials[tplane_odd(tiled, at.position)?]),
+        _ => Ok(scene.materials[at.object]),
     }
 }
 
-/// Whether a tile is of the plane's own material.
-fn tplane_foreground<R: Real>(tiled: &Tiled<R>, position: V3<R>) -> Result<bool, Undecided> {
-    Ok(tiled.index[0].odd(position.x)? == tiled.index[1].odd(position.z)?)
+/// The ambient reflectivity at a hit.
+pub fn getamb<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<V3<R>, Undecided> {
+    let ambient = scene.palette[tile_material(scene, at)?].ambient;
+    match &scene.surfaces[at.object] {
+        Surface::Plain | Surface::Tiled(_) => Ok(ambient),
+        Surface::Pplane(plane) => {
+            procedural::pplane(plane.shader, &PlanePoint { position: at.position, ambient, plane })
+        }
+        Surface::Psphere(shader) => {
+            procedural::psphere(*shader, &SpherePoint { from_center: at.from_center, ambient })
+        }
+        Surface::Textured(textured) => Ok(ambient.each(texel(scene, textured, at.position)?)),
+    }
+}
+
+/// The diffuse reflectivity at a hit.
+pub fn getdiff<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<V3<R>, Undecided> {
+    let diffuse = scene.palette[tile_material(scene, at)?].diffuse;
+    match &scene.surfaces[at.object] {
+        Surface::Textured(textured) => Ok(diffuse.each(texel(scene, textured, at.position)?)),
+        _ => Ok(diffuse),
+    }
+}
+
+/// 0 where the indices of a tile add up to an even number, else 1.
+fn tplane_odd<R: Real>(tiled: &Tiled<R>, position: V3<R>) -> Result<usize, Undecided> {
+    let [p, q] = match &tiled.rows {
+        None => [position.x, position.z],
+        Some(rows) => [rows[0].dot(position), rows[1].dot(position)],
+    };
+    Ok(usize::from(tiled.index[0].odd(p)? != tiled.index[1].odd(q)?))
+}
+
+/// The texel at a point of a `texplane`, each channel byte/256.
+fn texel<R: Real>(scene: &Prepared<R>, textured: &Textured<R>, position: V3<R>) -> Result<V3<R>, Undecided> {
+    let p = textured.extent.coordinates(position);
+    let mut place = [0; 2];
+    for (i, place) in place.iter_mut().enumerate() {
+        let index = (p[i] * textured.per_unit[i]).floor()?;
+        let size = f64::from(textured.size[i]);
+        let index = if textured.repeats { index.rem_euclid(size) } else { index.clamp(0.0, size - 1.0) };
+        *place = index as usize;
+    }
+    let texels = &scene.textures[textured.texture];
+    // The picture's top row comes first.
+    let row = texels.height as usize - 1 - place[1];
+    let first = 3 * (row * texels.width as usize + place[0]);
+    let channel = |i: usize| R::exact(f64::from(texels.rgb[first + i]) / 256.0);
+    Ok(V3::new(channel(0), channel(1), channel(2)))
 }
 
 /// (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)) with θ the angle of (x, y) from +x; θ = 0 at the origin.

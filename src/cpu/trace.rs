@@ -1,11 +1,14 @@
-//! Twin of `shaders/trace.wgsl`: the closest hit of a ray, and its colour.
+//! Twin of `shaders/trace.wgsl`: the closest hit of a primary ray, and the colour that a ray brings.
 
 use super::bvh::bvh_hits;
 use super::camera::{Ray, camera_getdir, inverse_distance};
-use super::plane::plane_hits;
-use super::sphere::sphere_hits;
-use super::surface::getamb;
-use crate::prepare::Prepared;
+use super::light::{Lit, light_term, normal_at};
+use super::plane::{on_plane, plane_hits};
+use super::sphere::{sphere_from_center, sphere_hits};
+use super::surface::{Point, getamb};
+use super::world::{Range, closest_from};
+use crate::prepare::exact::two_to;
+use crate::prepare::{Prepared, Surface, World};
 use crate::real::{Real, Undecided, V3};
 
 /// A hit of a primary ray.
@@ -19,20 +22,91 @@ pub struct Hit<R> {
     pub index: usize,
 }
 
-/// What a ray found: the hit and the colour it brings, (r, g, b) with 1 as bright as a byte goes.
-#[derive(Debug, Clone, Copy)]
-pub struct Traced<R> {
-    /// The ray.
-    pub ray: Ray<R>,
-    /// The closest hit, if any.
-    pub hit: Option<Hit<R>>,
-    /// Ambient reflectivity at the hit; zero without.
-    pub ambient: V3<R>,
-    /// The colour.
-    pub color: V3<R>,
+/// How far rays are followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// A ray that starts farther than this along its path brings nothing, in world units.
+    pub max_path: f64,
+    /// Most rays of a sample, shadow rays not counted.
+    pub max_rays: u32,
+    /// A sample this bright in all channels makes its pixel white whatever else it brings: rays take no light away.
+    pub enough: f64,
 }
 
-/// The closest object that the ray hits; of equally near ones the first in the file.
+impl Default for Limits {
+    fn default() -> Self {
+        Self { max_path: 20.0, max_rays: 1 << 16, enough: 1.0 }
+    }
+}
+
+/// Why a ray's colour is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// The number type is too coarse.
+    Undecided,
+    /// The sample needs more rays than allowed.
+    TooManyRays,
+}
+
+impl From<Undecided> for Fault {
+    fn from(_: Undecided) -> Self {
+        Self::Undecided
+    }
+}
+
+/// A ray of the tree that a sample grows.
+#[derive(Debug, Clone, Copy)]
+pub struct Branch<R> {
+    /// Where it starts, from the viewpoint in units of 2^scale.
+    pub base: V3<R>,
+    /// Its unit direction.
+    pub dir: V3<R>,
+    /// Length of the path before it, in units of 2^scale.
+    pub total: R,
+    /// The group of surfaces that it left from.
+    pub last: Option<u32>,
+    /// What its colour counts for.
+    pub weight: V3<R>,
+    /// Number of the ray that it came from; its own for the first.
+    pub parent: u32,
+    /// How it left.
+    pub kind: RayKind,
+}
+
+/// How a ray left the surface it came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RayKind {
+    /// From the viewpoint.
+    Primary,
+    /// Straight through.
+    Through,
+    /// As a mirror image.
+    Mirror,
+}
+
+/// Sees how a colour comes about: `plumb probe` listens, rendering does not.
+pub trait Watch<R> {
+    /// Ray `number` found nothing, or (None, true) was not followed as its path is too long.
+    fn missed(&mut self, number: u32, ray: &Branch<R>, too_long: bool) {
+        let _ = (number, ray, too_long);
+    }
+    /// Ray `number` met `point` at distance `t`, where the ambient reflectivity is `ambient`.
+    fn met(&mut self, number: u32, ray: &Branch<R>, t: R, point: &Point<R>, ambient: V3<R>) {
+        let _ = (number, ray, t, point, ambient);
+    }
+    /// What a light does there.
+    fn light(&mut self, number: u32, light: usize, lit: &Lit<R>) {
+        let _ = (number, light, lit);
+    }
+}
+
+/// Nobody listens.
+#[derive(Debug, Clone, Copy)]
+pub struct Unwatched;
+
+impl<R> Watch<R> for Unwatched {}
+
+/// The closest object that a primary ray hits; of equally near ones the first in the file.
 pub fn find_closest_object<R: Real>(scene: &Prepared<R>, ray: &Ray<R>) -> Result<Option<Hit<R>>, Undecided> {
     let mut closest: Option<Hit<R>> = None;
     for (index, plane) in scene.planes.iter().enumerate() {
@@ -40,21 +114,26 @@ pub fn find_closest_object<R: Real>(scene: &Prepared<R>, ray: &Ray<R>) -> Result
             nearer(&mut closest, Hit { inverse, object: plane.object, index })?;
         }
     }
-    let mut treated = 0;
-    if let Some(bvh) = &scene.bvh {
-        bvh_hits(scene, bvh, ray, &mut closest)?;
-        treated = bvh.len;
-    }
-    for (index, sphere) in scene.spheres.iter().enumerate().skip(treated) {
+    let mut sphere = |index: usize| -> Result<f64, Undecided> {
+        let sphere = &scene.spheres[index];
         if let Some(inverse) = sphere_hits(&scene.camera, sphere, ray)? {
             nearer(&mut closest, Hit { inverse, object: sphere.object, index })?;
         }
+        Ok(closest.as_ref().map_or(f64::INFINITY, |hit| 1.0 / hit.inverse.approx()))
+    };
+    let mut treated = 0;
+    if let Some(bvh) = &scene.bvh {
+        bvh_hits(bvh, glam::DVec3::ZERO, ray.w.approx(), f64::INFINITY, &mut sphere)?;
+        treated = bvh.len;
+    }
+    for index in treated..scene.spheres.len() {
+        sphere(index)?;
     }
     Ok(closest)
 }
 
 /// Takes `hit` if it is nearer than `closest`, or as near and first in the file.
-pub(super) fn nearer<R: Real>(closest: &mut Option<Hit<R>>, hit: Hit<R>) -> Result<(), Undecided> {
+fn nearer<R: Real>(closest: &mut Option<Hit<R>>, hit: Hit<R>) -> Result<(), Undecided> {
     let takes = match closest {
         None => true,
         Some(best) => {
@@ -68,14 +147,163 @@ pub(super) fn nearer<R: Real>(closest: &mut Option<Hit<R>>, hit: Hit<R>) -> Resu
     Ok(())
 }
 
-/// Traces the ray through pixel (x, y), counted from the bottom left.
-pub fn ray_trace<R: Real>(scene: &Prepared<R>, x: f64, y: f64) -> Result<Traced<R>, Undecided> {
+/// Where a primary ray hit.
+pub fn locate<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Point<R> {
+    let zero = V3::new(R::zero(), R::zero(), R::zero());
+    let object = hit.object;
+    if scene.world.is_none() && matches!(scene.surfaces[object], Surface::Plain) {
+        // Nothing asks where the hit is.
+        return Point { object, position: zero, from_center: zero };
+    }
+    let mut position = ray.w * (R::exact(1.0) / hit.inverse);
+    if !scene.is_plane[object] {
+        let sphere = &scene.spheres[hit.index];
+        return Point { object, position, from_center: sphere_from_center(&scene.camera, sphere, ray, hit.inverse) };
+    }
+    if let Some(world) = &scene.world {
+        position = on_plane(&world.planes[world.places[object]], position);
+    }
+    Point { object, position, from_center: zero }
+}
+
+/// What a ray found, and the colour it brings, (r, g, b) with 1 as bright as a byte goes.
+#[derive(Debug, Clone, Copy)]
+pub struct Traced<R> {
+    /// The ray.
+    pub ray: Ray<R>,
+    /// The closest hit, if any.
+    pub hit: Option<Hit<R>>,
+    /// Ambient reflectivity at the hit; zero without.
+    pub ambient: V3<R>,
+    /// The colour.
+    pub color: V3<R>,
+}
+
+/// Traces the ray through pixel (x, y), counted from the bottom left, with fractions between pixels.
+pub fn ray_trace<R: Real>(
+    scene: &Prepared<R>,
+    limits: &Limits,
+    x: f64,
+    y: f64,
+    watch: &mut impl Watch<R>,
+) -> Result<Traced<R>, Fault> {
     let ray = camera_getdir(&scene.camera, x, y);
     let zero = V3::new(R::zero(), R::zero(), R::zero());
-    let Some(hit) = find_closest_object(scene, &ray)? else {
-        return Ok(Traced { ray, hit: None, ambient: zero, color: zero });
+    let hit = find_closest_object(scene, &ray)?;
+    let Some(hit) = hit else { return Ok(Traced { ray, hit, ambient: zero, color: zero }) };
+    let point = locate(scene, &ray, &hit);
+    let ambient = getamb(scene, &point)?;
+    let color = match &scene.world {
+        // Without lights the notes' ambient tracer is all there is.
+        None => ambient * inverse_distance(&scene.camera, &ray, hit.inverse),
+        Some(world) => {
+            let length = ray.w2.sqrt();
+            let one = R::exact(1.0);
+            let first = Branch {
+                base: zero,
+                dir: V3::new(ray.w.x / length, ray.w.y / length, ray.w.z / length),
+                total: R::zero(),
+                last: None,
+                weight: V3::new(one, one, one),
+                parent: 0,
+                kind: RayKind::Primary,
+            };
+            let mut tree = Tree { scene, world, waiting: Vec::new(), rays: 1, color: zero };
+            tree.shade(0, &first, length / hit.inverse, &point, watch)?;
+            tree.grow(limits, watch)?;
+            tree.color
+        }
     };
-    let ambient = getamb(scene, &ray, &hit)?;
-    let color = ambient * inverse_distance(&scene.camera, &ray, hit.inverse);
     Ok(Traced { ray, hit: Some(hit), ambient, color })
+}
+
+/// The rays of a sample: those that wait, and what the others brought.
+struct Tree<'a, R> {
+    scene: &'a Prepared<R>,
+    world: &'a World<R>,
+    waiting: Vec<Branch<R>>,
+    rays: u32,
+    color: V3<R>,
+}
+
+impl<R: Real> Tree<'_, R> {
+    /// Follows the waiting rays, and those that they leave, to their ends.
+    fn grow(&mut self, limits: &Limits, watch: &mut impl Watch<R>) -> Result<(), Fault> {
+        let longest = R::exact(limits.max_path) * R::exact(two_to(-self.scene.camera.scale));
+        while let Some(ray) = self.waiting.pop() {
+            if self.saturated(limits.enough)? {
+                return Ok(());
+            }
+            let number = self.rays;
+            if (ray.total - longest).positive()? {
+                watch.missed(number, &ray, true);
+                continue;
+            }
+            if self.rays == limits.max_rays {
+                return Err(Fault::TooManyRays);
+            }
+            self.rays += 1;
+            let range = Range { skip: ray.last, beyond: None, light: None };
+            match closest_from(self.world, ray.base, ray.dir, &range)? {
+                Some(met) => self.shade(number, &ray, met.t, &met.point, watch)?,
+                None => watch.missed(number, &ray, false),
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the colour is at least `enough` in all channels, so that the other rays cannot change the bytes.
+    fn saturated(&self, enough: f64) -> Result<bool, Undecided> {
+        if self.color.approx().min_element() < enough {
+            return Ok(false);
+        }
+        let enough = R::exact(enough);
+        let full = |c: R| (c - enough).non_negative();
+        Ok(full(self.color.x)? && full(self.color.y)? && full(self.color.z)?)
+    }
+
+    /// Adds what a ray that met `point` at distance `t` brings, and leaves the rays that go on from there.
+    fn shade(
+        &mut self,
+        number: u32,
+        ray: &Branch<R>,
+        t: R,
+        point: &Point<R>,
+        watch: &mut impl Watch<R>,
+    ) -> Result<(), Fault> {
+        let (scene, world) = (self.scene, self.world);
+        let normal = normal_at(world, scene.is_plane[point.object], point);
+        let mut color = getamb(scene, point)?;
+        watch.met(number, ray, t, point, color);
+        for light in 0..world.lights.len() {
+            let lit = light_term(scene, world, light, point, normal, ray.base)?;
+            watch.light(number, light, &lit);
+            if let Lit::Lit { diffuse, glint, .. } = lit {
+                color = color + diffuse + glint;
+            }
+        }
+        let total = ray.total + t;
+        let material = &scene.palette[scene.materials[point.object]];
+        let one = R::exact(1.0);
+        let kept = if material.clear { one - material.transparency } else { one };
+        let unit = R::exact(two_to(-scene.camera.scale));
+        self.color = self.color + ray.weight.each(color) * (kept / total * unit);
+        let last = Some(world.groups[point.object]);
+        let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>| {
+            // A ray that counts for nothing need not be traced.
+            if weight.approx() != glam::DVec3::ZERO {
+                self.waiting.push(Branch { base: point.position, dir, total, last, weight, parent: number, kind });
+            }
+        };
+        if material.mirror {
+            let along = normal.dot(-ray.dir);
+            let mirrored = normal * (along + along) + ray.dir;
+            leave(RayKind::Mirror, mirrored, ray.weight.each(material.specular));
+        }
+        if material.clear {
+            let tint = scene.palette[super::surface::tile_material(scene, point)?].tint;
+            leave(RayKind::Through, ray.dir, ray.weight.each(tint) * material.transparency);
+        }
+        Ok(())
+    }
 }

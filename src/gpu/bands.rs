@@ -12,10 +12,15 @@ use super::compose::WORKGROUP;
 use super::device::Gpu;
 use super::pack::Job;
 use super::pipeline::Pipeline;
-use crate::render::Band;
+use crate::cpu::pixel::Jitter;
+use crate::render::{Band, PixelFault};
 
 /// Most pixels of one dispatch: 8 MiB of packed bytes, twice for two dispatches under way, twice for reading back.
 const MAX_PIXELS: u64 = 2 << 20;
+/// Most bytes of sample offsets of one dispatch.
+const MAX_OFFSETS: u64 = 32 << 20;
+/// Bytes of a sample's offset.
+const OFFSET_BYTES: u64 = 8;
 /// A dispatch is made larger or smaller so that it takes about this long.
 const TARGET_SECONDS: f64 = 0.15;
 /// Ray–object tests of the first dispatch, whose speed is not known yet: a tenth of a second on two CPU cores.
@@ -46,29 +51,43 @@ pub enum BandError {
     /// The GPU's fault.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// A pixel needs more rays than allowed.
+    #[error(transparent)]
+    Pixel(#[from] PixelFault),
     /// `emit` said no.
     #[error(transparent)]
     Emit(#[from] io::Error),
 }
 
 /// Value and bytes of pixel (x, y): what the CPU says of pixels that the GPU left undecided.
-pub type Refine<'a> = dyn Fn(u32, u32) -> ([f32; 3], [u8; 3]) + Sync + 'a;
+pub type Refine<'a> = dyn Fn(u32, u32) -> Result<([f32; 3], [u8; 3]), PixelFault> + Sync + 'a;
 
-/// Renders `rows` (from the bottom, half-open) of a picture `width` columns wide, from the top row down. `tests` is about
-/// the number of objects that a ray asks.
+/// The frame to render.
+pub struct Frame<'a> {
+    /// Columns.
+    pub width: u32,
+    /// Rows, from the bottom, half-open.
+    pub rows: Range<u32>,
+    /// About the number of objects that the rays of a pixel ask.
+    pub tests: usize,
+    /// How the samples are spread.
+    pub jitter: &'a Jitter,
+    /// What decides pixels that the GPU does not.
+    pub refine: &'a Refine<'a>,
+}
+
+/// Renders the frame from the top row down.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
-    width: u32,
-    rows: Range<u32>,
-    tests: usize,
-    refine: &Refine<'_>,
+    frame: &Frame<'_>,
     emit: &mut crate::render::Emit<'_>,
 ) -> Result<BandTimes, BandError> {
+    let (width, rows) = (frame.width, frame.rows.clone());
     let largest = largest_dispatch(gpu, pipeline, width, &rows);
     let mut slots = [Slot::new(gpu, pipeline, largest), Slot::new(gpu, pipeline, largest)];
     gpu.check()?;
-    let mut plan = Plan::new(width, rows, largest, tests);
+    let mut plan = Plan::new(width, rows, largest, frame.tests);
     let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
     let mut times = BandTimes::default();
     let mut next = 0;
@@ -81,7 +100,7 @@ pub fn run(
             let seconds = slots[oldest].collect(gpu, &mut assembly, &mut times)?;
             plan.took(seconds.0, seconds.1);
             open -= 1;
-            if let Some(band) = assembly.finished(refine, &mut times) {
+            if let Some(band) = assembly.finished(frame.refine, &mut times)? {
                 let start = Instant::now();
                 emit(&band)?;
                 times.emit += start.elapsed().as_secs_f64();
@@ -90,7 +109,7 @@ pub fn run(
         }
         match rectangle {
             Some(rectangle) => {
-                slots[next].submit(gpu, pipeline, rectangle);
+                slots[next].submit(gpu, pipeline, frame.jitter, rectangle);
                 next = 1 - next;
                 open += 1;
                 times.dispatches += 1;
@@ -106,7 +125,10 @@ fn largest_dispatch(gpu: &Gpu, pipeline: &Pipeline, width: u32, rows: &Range<u32
     let limits = gpu.device.limits();
     let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
-    MAX_PIXELS.min(bytes / pipeline.pixel_bytes).min(pixels)
+    let offsets = u64::from(pipeline.offsets) * OFFSET_BYTES;
+    // A row of workgroups at least, whatever it takes; wgpu says so if it is too much.
+    let by_offsets = MAX_OFFSETS.checked_div(offsets).unwrap_or(u64::MAX).max(u64::from(WORKGROUP * WORKGROUP));
+    MAX_PIXELS.min(bytes / pipeline.pixel_bytes).min(by_offsets).min(pixels)
 }
 
 /// A rectangle of a band: columns of rows `band` (from the bottom).
@@ -121,6 +143,14 @@ struct Rectangle {
 impl Rectangle {
     fn pixels(&self) -> u64 {
         u64::from(self.band.end - self.band.start) * u64::from(self.columns.end - self.columns.start)
+    }
+
+    /// The offsets of the samples of its pixels, top row first.
+    fn offsets(&self, jitter: &Jitter, samples: u32) -> Vec<[f32; 2]> {
+        let columns = self.columns.start as usize * samples as usize..self.columns.end as usize * samples as usize;
+        let rows = self.band.clone().rev().filter_map(|y| jitter.row(y));
+        rows.flat_map(|row| row[columns.clone()].iter().map(|[a, b]| [*a as f32, *b as f32]).collect::<Vec<_>>())
+            .collect()
     }
 }
 
@@ -180,6 +210,7 @@ impl Plan {
 #[derive(Debug)]
 struct Slot {
     job: wgpu::Buffer,
+    offsets: Option<wgpu::Buffer>,
     pixels: wgpu::Buffer,
     staging: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
@@ -219,15 +250,22 @@ impl Slot {
             resolved: buffer("clock", 16, wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
             staging: buffer("clock staging", 16, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
         });
-        let bind_group = pipeline.bind(gpu, &job, &pixels);
-        Self { job, pixels, staging, bind_group, clock, pixel_bytes: pipeline.pixel_bytes, pending: None }
+        let offsets = (pipeline.offsets > 0).then(|| {
+            let size = largest * u64::from(pipeline.offsets) * OFFSET_BYTES;
+            buffer("offsets", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST)
+        });
+        let bind_group = pipeline.bind(gpu, &job, &pixels, offsets.as_ref());
+        Self { job, offsets, pixels, staging, bind_group, clock, pixel_bytes: pipeline.pixel_bytes, pending: None }
     }
 
-    fn submit(&mut self, gpu: &Gpu, pipeline: &Pipeline, rectangle: Rectangle) {
+    fn submit(&mut self, gpu: &Gpu, pipeline: &Pipeline, jitter: &Jitter, rectangle: Rectangle) {
         let columns = rectangle.columns.end - rectangle.columns.start;
         let rows = rectangle.band.end - rectangle.band.start;
         let job = Job { first: [rectangle.columns.start, rectangle.band.end - 1], size: [columns, rows] };
         gpu.queue.write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+        if let Some(offsets) = &self.offsets {
+            gpu.queue.write_buffer(offsets, 0, bytemuck::cast_slice(&rectangle.offsets(jitter, pipeline.offsets)));
+        }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let timestamp_writes = self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {
             query_set: &clock.queries,
@@ -349,24 +387,24 @@ impl Assembly {
     }
 
     /// The band, if all its rectangles have come, with what the CPU had to decide.
-    fn finished(&mut self, refine: &Refine<'_>, times: &mut BandTimes) -> Option<Band> {
+    fn finished(&mut self, refine: &Refine<'_>, times: &mut BandTimes) -> Result<Option<Band>, PixelFault> {
         if !std::mem::take(&mut self.complete) {
-            return None;
+            return Ok(None);
         }
-        let mut band = self.band.take()?;
+        let Some(mut band) = self.band.take() else { return Ok(None) };
         times.refined += self.undecided.len() as u64;
         let (width, top) = (self.width, band.rows.end - 1);
-        let decided: Vec<_> = std::mem::take(&mut self.undecided)
+        let decided: Vec<(usize, _)> = std::mem::take(&mut self.undecided)
             .into_par_iter()
-            .map(|place| (place, refine((place % width) as u32, top - (place / width) as u32)))
-            .collect();
+            .map(|place| refine((place % width) as u32, top - (place / width) as u32).map(|done| (place, done)))
+            .collect::<Result<_, _>>()?;
         for (place, (value, bytes)) in decided {
             band.rgb[3 * place..3 * place + 3].copy_from_slice(&bytes);
             if let Some(values) = &mut band.values {
                 values[place] = value;
             }
         }
-        Some(band)
+        Ok(Some(band))
     }
 }
 

@@ -8,19 +8,25 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::features::FeatureSet;
-use super::pack::{Kind, Packed, Plane, SmallSphere, WideSphere};
+use super::pack::{Kind, Packed, Plane, Rectangle, SmallSphere, WideSphere, WorldPlane, WorldSphere};
 use crate::cpu::procedural::{PPLANE_WGSL, PSPHERE_WGSL};
 
 /// Side of the square workgroup: 16×16 or 256×1 were a fifth faster than 8×8 on lavapipe.
 pub const WORKGROUP: u32 = 16;
 
+/// Most rays that wait while another is followed; a pixel that needs more is handed to the CPU.
+const STACK: usize = 24;
+
 const BINDINGS: &str = include_str!("../../shaders/bindings.wgsl");
 const CAMERA: &str = include_str!("../../shaders/camera.wgsl");
 const BVH: &str = include_str!("../../shaders/bvh.wgsl");
+const JITTER: &str = include_str!("../../shaders/jitter.wgsl");
+const LIGHT: &str = include_str!("../../shaders/light.wgsl");
 const PLANE: &str = include_str!("../../shaders/plane.wgsl");
 const SPHERE: &str = include_str!("../../shaders/sphere.wgsl");
 const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
 const TRACE: &str = include_str!("../../shaders/trace.wgsl");
+const WORLD: &str = include_str!("../../shaders/world.wgsl");
 
 /// Writes the shader for a packed scene.
 pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
@@ -36,31 +42,34 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
     ];
     names.extend(helpers.into_iter().filter_map(|(name, holds)| holds.then_some(name)));
 
-    let mut files = vec![BINDINGS];
-    if features.any_object() {
-        files.push(CAMERA);
-        if features.planes {
-            files.push(PLANE);
-        }
-        if features.small_spheres || features.wide_spheres {
-            files.push(SPHERE);
-        }
-        if features.bvh {
-            files.push(BVH);
-        }
-        files.push(SURFACE);
-    } else {
-        files.push(CAMERA);
-    }
-    files.push(TRACE);
+    let lit = names.contains("lit");
+    let files = [
+        (BINDINGS, true),
+        (CAMERA, true),
+        (JITTER, names.contains("samples") && !names.contains("course")),
+        (PLANE, features.planes || features.rectangles || lit),
+        (SPHERE, features.small_spheres || features.wide_spheres || names.contains("lit_sphere")),
+        (BVH, features.bvh),
+        (SURFACE, features.any_object()),
+        (WORLD, lit),
+        (LIGHT, lit),
+        (TRACE, true),
+    ];
     let insert = |name: &str| match name {
         "procedural" => procedural.clone(),
         "procedural_cases" => procedural_cases(features),
+        "from_center_cases" => from_center_cases(features),
         "unrolled" => unrolled(packed, features),
+        "unrolled_closest" => unrolled_world(packed, features, |hits| format!("met_nearer(&closest, {hits});")),
+        "unrolled_any" => unrolled_world(packed, features, |hits| {
+            // The object's number, which comes last, is not asked for.
+            let call = hits.rsplit_once(',').map_or(hits, |(call, _)| call);
+            format!("hit = hit || {call} > 0.0;")
+        }),
         _ => unreachable!("shaders/ asks for the insertion `{name}`"),
     };
     let mut text = constants(packed, features);
-    for file in files {
+    for (file, _) in files.iter().filter(|(_, needed)| *needed) {
         text.push('\n');
         preprocess(file, &names, &insert, &mut text);
     }
@@ -78,19 +87,34 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         lines.push(format!("const CAMERA_DISTANCE = {};", literal(camera.distance)));
         lines.push(format!("const CAMERA_GAIN = {};", literal(camera.gain)));
     }
-    let counts = [
-        ("PLANES", packed.planes.len(), features.planes),
-        ("SMALL_SPHERES", packed.small_spheres.len(), features.small_spheres),
-        ("WIDE_SPHERES", packed.wide_spheres.len(), features.wide_spheres),
-    ];
-    for (name, count, present) in counts {
-        if present && !features.unrolled {
-            lines.push(format!("const {name} = {count}u;"));
+    let names = features.names();
+    let mut count = |name: &str, constant: &str, value: usize| {
+        if names.contains(name) {
+            lines.push(format!("const {constant} = {value}u;"));
+        }
+    };
+    count("plane_loop", "PLANES", packed.planes.len());
+    count("rectangle_loop", "RECTANGLES", packed.rectangles.len());
+    count("small_sphere_loop", "SMALL_SPHERES", packed.small_spheres.len());
+    count("wide_sphere_loop", "WIDE_SPHERES", packed.wide_spheres.len());
+    count("bvh", "BVH_DEPTH", packed.bvh_depth);
+    count("small_sphere_tree", "BVH_STEPS", bvh_steps(packed));
+    count("samples", "SAMPLES", features.samples as usize);
+    if let Some(lit) = &packed.lit {
+        count("lit", "LIGHTS", lit.lights.len());
+        count("world_loop", "WORLD_STEPS", lit.loop_iterations());
+        count("world_plane_loop", "WORLD_PLANES", lit.planes.len());
+        count("world_sphere_loop", "WORLD_TREE", lit.in_tree);
+        count("world_sphere_loop", "WORLD_SPHERES", lit.spheres.len());
+        count("stack", "STACK", STACK);
+        if names.contains("lit") {
+            lines.push(format!("const UNIT = {};", literal(camera.unit)));
+            lines.push(format!("const HIGHEST = {};", literal(lit.highest)));
         }
     }
-    if features.bvh {
-        lines.push(format!("const BVH_DEPTH = {}u;", packed.bvh_depth));
-        lines.push(format!("const BVH_STEPS = {}u;", bvh_steps(packed)));
+    if let (Some(lit), true) = (features.lit, names.contains("branches")) {
+        lines.push(format!("const MAX_PATH = {};", literal(lit.max_path)));
+        lines.push(format!("const MAX_RAYS = {}u;", lit.max_rays));
     }
     for kind in features.kinds.iter().filter(|kind| **kind != Kind::Plain) {
         lines.push(format!("const {} = {}u;", kind.name(), kind.code()));
@@ -138,22 +162,11 @@ fn procedural_cases(features: &FeatureSet) -> String {
     let mut text = String::new();
     for kind in &features.kinds {
         let (point, family, shader) = match *kind {
-            Kind::Plain | Kind::Tiled => continue,
-            Kind::Pplane(shader) => (
-                "PlanePoint(ray.w / hit.inverse, object.ambient, pplanes[record])",
-                PPLANE_WGSL,
-                shader,
-            ),
-            Kind::SmallPsphere(shader) => (
-                "SpherePoint(small_sphere_from_center(small_spheres[record], ray, hit.inverse), object.ambient)",
-                PSPHERE_WGSL,
-                shader,
-            ),
-            Kind::WidePsphere(shader) => (
-                "SpherePoint(wide_sphere_from_center(wide_spheres[record], ray, hit.inverse), object.ambient)",
-                PSPHERE_WGSL,
-                shader,
-            ),
+            Kind::Plain | Kind::Tiled | Kind::Textured => continue,
+            Kind::Pplane(shader) => ("PlanePoint(point.position, ambient, pplanes[record])", PPLANE_WGSL, shader),
+            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => {
+                ("SpherePoint(point.from_center, ambient)", PSPHERE_WGSL, shader)
+            }
         };
         let function = family.get(shader as usize).map_or("", |entry| entry.0);
         writeln!(text, "        case {}: {{ return {function}({point}); }}", kind.name()).unwrap_or_default();
@@ -161,7 +174,37 @@ fn procedural_cases(features: &FeatureSet) -> String {
     text
 }
 
-/// The objects of a small scene as literals: no load, no loop.
+/// How `locate` finds H − C on a sphere, by what a record says of it.
+fn from_center_cases(features: &FeatureSet) -> String {
+    if features.lit.is_some() {
+        // The form for small spheres is the more accurate one; `complete` has filled in the other.
+        return if features.small_spheres {
+            "    if (object.place & SPHERE_BIT) != 0u {
+        let seen = world_spheres[object.place & ~SPHERE_BIT].seen;
+        if seen != 0u {
+            point.from_center = small_sphere_from_center(small_spheres[seen - 1u], ray, hit.inverse);
+        }
+    }
+"
+            .into()
+        } else {
+            String::new()
+        };
+    }
+    let mut text = "    switch object.kind & 255u {\n".to_owned();
+    for kind in &features.kinds {
+        let size = match kind {
+            Kind::SmallPsphere(_) => "small",
+            Kind::WidePsphere(_) => "wide",
+            _ => continue,
+        };
+        let call = format!("{size}_sphere_from_center({size}_spheres[object.kind >> 8u], ray, hit.inverse)");
+        writeln!(text, "        case {}: {{ point.from_center = {call}; }}", kind.name()).unwrap_or_default();
+    }
+    text + "        default: {}\n    }\n"
+}
+
+/// The objects of a small scene as literals, for primary rays: no load, no loop.
 fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     let mut text = String::new();
     if !features.unrolled {
@@ -173,6 +216,9 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     for p in &packed.planes {
         line("plane_hits", plane_literal(p), p.object);
     }
+    for r in &packed.rectangles {
+        line("rectangle_hits", rectangle_literal(r), r.object);
+    }
     for s in &packed.small_spheres {
         line("small_sphere_hits", small_sphere_literal(s), s.object);
     }
@@ -182,8 +228,66 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     text
 }
 
+/// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function.
+fn unrolled_world(packed: &Packed, features: &FeatureSet, statement: impl Fn(&str) -> String) -> String {
+    let mut text = String::new();
+    let (true, Some(lit)) = (features.unrolled, &packed.lit) else { return text };
+    let mut line = |call: String| writeln!(text, "    {}", statement(&call)).unwrap_or_default();
+    for p in &lit.planes {
+        line(format!("plane_hits_from({}, base, dir, range), {}u", world_plane_literal(p), p.object));
+    }
+    for s in &lit.spheres {
+        line(format!("sphere_hits_from({}, base, dir, range), {}u", world_sphere_literal(s), s.object));
+    }
+    text
+}
+
 fn plane_literal(p: &Plane) -> String {
     format!("Plane({}, {}u, {}, 0u)", vector(&p.inverse), p.object, vector(&p.front))
+}
+
+fn rectangle_literal(r: &Rectangle) -> String {
+    format!(
+        "Rectangle({}, {}u, {}, 0u, {}, {}, {}, {})",
+        vector(&r.inverse),
+        r.object,
+        vector(&r.front),
+        vector(&r.side_0),
+        literal(r.length_0),
+        vector(&r.side_1),
+        literal(r.length_1)
+    )
+}
+
+fn world_plane_literal(p: &WorldPlane) -> String {
+    format!(
+        "WorldPlane({}, {}, {}, {}u, {}, {}u, {}, {}, {}, {}, {}, {}u, {}u)",
+        vector(&p.normal),
+        literal(p.offset),
+        vector(&p.keep),
+        p.group,
+        vector(&p.own),
+        p.object,
+        vector(&p.row_0),
+        literal(p.origin_0),
+        vector(&p.row_1),
+        literal(p.origin_1),
+        vector(&p.lengths),
+        p.level,
+        p.bounded
+    )
+}
+
+fn world_sphere_literal(s: &WorldSphere) -> String {
+    format!(
+        "WorldSphere({}, {}, {}u, {}u, {}u, {}u)",
+        vector(&s.center),
+        literal(s.radius),
+        s.group,
+        s.object,
+        s.level,
+        s.seen
+    )
 }
 
 fn small_sphere_literal(s: &SmallSphere) -> String {

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use super::compose::compose;
 use super::features::FeatureSet;
 use super::pack::Packed;
-use crate::prepare::Prepared;
+use crate::prepare::{Prepared, View};
 use crate::render::Settings;
 use crate::scene::Scene;
 
 fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
-    let packed = Packed::new(&Prepared::new(scene, settings.screen_tolerance));
-    let features = FeatureSet::new(&packed, settings.values);
+    let packed = Packed::new(&Prepared::new(scene, View::new(settings.screen_tolerance, settings.samples)));
+    let features = FeatureSet::new(&packed, settings);
     (packed, features)
 }
 
@@ -52,6 +52,16 @@ pub fn buffers(scene: &Scene, settings: &Settings) -> String {
     list(&mut text, "wide_spheres", &packed.wide_spheres);
     list(&mut text, "tiled_planes", &packed.tiled_planes);
     list(&mut text, "pplanes", &packed.pplanes);
+    list(&mut text, "rectangles", &packed.rectangles);
+    list(&mut text, "bvh", &packed.bvh);
+    list(&mut text, "texplanes", &packed.texplanes);
+    if let Some(lit) = &packed.lit {
+        list(&mut text, "lit objects", &lit.objects);
+        list(&mut text, "materials", &lit.materials);
+        list(&mut text, "lights", &lit.lights);
+        list(&mut text, "world_planes", &lit.planes);
+        list(&mut text, "world_spheres", &lit.spheres);
+    }
     text
 }
 

@@ -3,26 +3,63 @@
 use std::collections::BTreeSet;
 
 use super::pack::{Kind, Packed};
+use crate::prepare::exact::two_to;
+use crate::render::{Settings, Spread};
 
 /// Which parts of the shader a scene needs.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FeatureSet {
-    /// There are planes.
+    /// There are planes without end.
     pub planes: bool,
+    /// There are rectangles that primary rays can hit.
+    pub rectangles: bool,
     /// Some plane crosses the screen, so that the z > τ rule decides pixels.
     pub front: bool,
     /// There are spheres seen small.
     pub small_spheres: bool,
-    /// The small spheres are many and have a tree.
-    pub bvh: bool,
     /// There are other spheres.
     pub wide_spheres: bool,
+    /// Spheres are many and have a tree.
+    pub bvh: bool,
     /// Objects stand in the text of the shader, not in buffers.
     pub unrolled: bool,
     /// The kinds of surface.
     pub kinds: BTreeSet<Kind>,
     /// The unquantised values are wanted too.
     pub values: bool,
+    /// Rays a pixel.
+    pub samples: u32,
+    /// The samples are spread as the course's program did.
+    pub course: bool,
+    /// There are lights.
+    pub lit: Option<LitFeatures>,
+}
+
+/// What a lit scene needs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LitFeatures {
+    /// Some object is a mirror.
+    pub mirror: bool,
+    /// Some object lets light through.
+    pub clear: bool,
+    /// Some object glints.
+    pub glint: bool,
+    /// Some light is a spotlight.
+    pub cone: bool,
+    /// Some light lies in a plane.
+    pub level: bool,
+    /// There are planes, of either kind.
+    pub planes: bool,
+    /// There are rectangles.
+    pub rectangles: bool,
+    /// There are spheres.
+    pub spheres: bool,
+    /// Some of them are outside the tree.
+    pub loose_spheres: bool,
+    /// Longest path, in units of 2^scale.
+    pub max_path: f32,
+    /// Most rays of a sample.
+    pub max_rays: u32,
 }
 
 /// Scenes of up to this many objects stand in the text of the shader: loads are what costs on a CPU's driver, and
@@ -30,23 +67,42 @@ pub struct FeatureSet {
 pub const UNROLLED_OBJECTS: usize = 32;
 
 impl FeatureSet {
-    /// The features of a packed scene.
-    pub fn new(packed: &Packed, values: bool) -> Self {
+    /// The features of a packed scene, rendered as the settings say.
+    pub fn new(packed: &Packed, settings: &Settings) -> Self {
+        let tree = !packed.bvh.is_empty();
+        let objects = packed.lit.as_ref().map_or(packed.tested(), |lit| lit.planes.len() + lit.spheres.len());
+        let fronts = packed.planes.iter().map(|p| p.front).chain(packed.rectangles.iter().map(|r| r.front));
         Self {
             planes: !packed.planes.is_empty(),
-            front: packed.planes.iter().any(|p| p.front != [0.0; 3]),
+            rectangles: !packed.rectangles.is_empty(),
+            front: fronts.into_iter().any(|front| front != [0.0; 3]),
             small_spheres: !packed.small_spheres.is_empty(),
-            bvh: !packed.bvh.is_empty(),
             wide_spheres: !packed.wide_spheres.is_empty(),
-            unrolled: (1..=UNROLLED_OBJECTS).contains(&packed.tested()),
+            bvh: tree,
+            unrolled: !tree && (1..=UNROLLED_OBJECTS).contains(&objects),
             kinds: packed.kinds.iter().copied().collect(),
-            values,
+            values: settings.values,
+            samples: settings.samples,
+            course: settings.samples > 1 && settings.jitter == Spread::Course,
+            lit: packed.lit.as_ref().map(|lit| LitFeatures {
+                mirror: lit.mirror,
+                clear: lit.clear,
+                glint: lit.glint,
+                cone: lit.lights.iter().any(|light| light.cosine >= -1.0),
+                level: lit.planes.iter().any(|plane| plane.level != 0),
+                planes: !lit.planes.is_empty(),
+                rectangles: lit.planes.iter().any(|plane| plane.bounded != 0),
+                spheres: !lit.spheres.is_empty(),
+                loose_spheres: lit.in_tree < lit.spheres.len(),
+                max_path: (settings.limits.max_path * two_to(-packed.scale)) as f32,
+                max_rays: settings.limits.max_rays,
+            }),
         }
     }
 
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
-        self.planes || self.small_spheres || self.wide_spheres
+        self.planes || self.rectangles || self.small_spheres || self.wide_spheres || self.bvh
     }
 
     /// Numbers of the `pplane` shaders used.
@@ -54,10 +110,10 @@ impl FeatureSet {
         self.numbers(|kind| if let Kind::Pplane(shader) = kind { Some(shader) } else { None })
     }
 
-    /// Numbers of the `psphere` shaders used on small or wide spheres.
+    /// Numbers of the `psphere` shaders used.
     pub fn pspheres(&self) -> BTreeSet<u32> {
         self.numbers(|kind| match kind {
-            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) => Some(shader),
+            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => Some(shader),
             _ => None,
         })
     }
@@ -68,30 +124,69 @@ impl FeatureSet {
 
     /// The names that hold, for `//#if`.
     pub fn names(&self) -> BTreeSet<&'static str> {
-        let small_point = self.kinds.iter().any(|k| matches!(k, Kind::SmallPsphere(_)));
-        let wide_point = self.kinds.iter().any(|k| matches!(k, Kind::WidePsphere(_)));
+        let has = |test: fn(&Kind) -> bool| self.kinds.iter().any(test);
+        let small_point = has(|k| matches!(k, Kind::SmallPsphere(_)));
+        let wide_point = has(|k| matches!(k, Kind::WidePsphere(_)));
+        let tiled = self.kinds.contains(&Kind::Tiled);
+        let textured = self.kinds.contains(&Kind::Textured);
+        let pplane = !self.pplanes().is_empty();
+        let psphere = !self.pspheres().is_empty();
+        let any = self.any_object();
+        // Without anything to hit there is nothing to light.
+        let is_lit = any && self.lit.is_some();
+        let lit = self.lit.filter(|_| any).unwrap_or_default();
+        let lit_seen = is_lit && self.small_spheres;
+        let loops = !self.unrolled;
+        let kinds_of_shape = [self.planes, self.rectangles, self.small_spheres, self.wide_spheres];
         [
-            ("any_object", self.any_object()),
-            ("objects", self.any_object()),
+            ("any_object", any),
+            ("ambient_only", any && !is_lit),
             ("plane", self.planes),
+            ("rectangle", self.rectangles),
             ("front", self.front),
-            ("plane_loop", self.planes && !self.unrolled),
+            ("plane_loop", self.planes && loops),
+            ("rectangle_loop", self.rectangles && loops),
             ("small_sphere", self.small_spheres),
-            ("small_sphere_loop", self.small_spheres && !self.unrolled && !self.bvh),
-            ("bvh", self.bvh),
-            ("small_sphere_buffer", self.small_spheres && (!self.unrolled || small_point)),
-            ("small_sphere_point", small_point),
+            ("small_sphere_tree", self.bvh && !is_lit),
+            ("small_sphere_loop", self.small_spheres && loops && !self.bvh),
+            ("small_sphere_buffer", self.small_spheres && (loops || small_point || lit_seen)),
+            ("small_sphere_point", small_point || lit_seen),
             ("wide_sphere", self.wide_spheres),
-            ("wide_sphere_loop", self.wide_spheres && !self.unrolled),
-            ("wide_sphere_buffer", self.wide_spheres && (!self.unrolled || wide_point)),
+            ("wide_sphere_loop", self.wide_spheres && loops),
+            ("wide_sphere_buffer", self.wide_spheres && (loops || wide_point)),
             ("wide_sphere_point", wide_point),
+            ("bvh", self.bvh),
             // Where objects do not come in the order of the file.
-            ("mixed", self.bvh || [self.planes, self.small_spheres, self.wide_spheres].iter().filter(|x| **x).count() > 1),
-            ("modulated", self.kinds.iter().any(|k| *k != Kind::Plain)),
-            ("tiled", self.kinds.contains(&Kind::Tiled)),
-            ("pplane", !self.pplanes().is_empty()),
-            ("psphere", !self.pspheres().is_empty()),
+            ("mixed", self.bvh || kinds_of_shape.iter().filter(|shape| **shape).count() > 1),
+            ("modulated", self.kinds.iter().any(|k| *k != Kind::Plain && (!is_lit || *k != Kind::Tiled))),
+            ("tiled", tiled),
+            ("tiled_ambient", tiled && !is_lit),
+            ("textured", textured),
+            ("pplane", pplane),
+            ("psphere", psphere),
+            ("position", is_lit || tiled || textured || pplane),
+            ("from_center", psphere || lit.spheres),
             ("values", self.values),
+            ("samples", any && self.samples > 1),
+            ("course", any && self.course),
+            ("lit", is_lit),
+            ("lit_sphere", lit.spheres),
+            ("lit_plane", lit.planes),
+            ("world_planes", lit.planes),
+            ("world_spheres", lit.spheres),
+            ("mirror", lit.mirror),
+            ("clear", lit.clear),
+            ("branches", lit.mirror || lit.clear),
+            ("stack", lit.mirror && lit.clear),
+            ("any_hit", is_lit && !lit.clear),
+            ("glint", lit.glint),
+            ("cone", lit.cone),
+            ("level", lit.level),
+            ("rectangle_anywhere", lit.rectangles),
+            ("world_loop", is_lit && loops && (lit.planes || lit.loose_spheres)),
+            ("world_plane_loop", is_lit && loops && lit.planes),
+            ("world_sphere_loop", is_lit && loops && lit.loose_spheres),
+            ("world_bvh", is_lit && self.bvh),
         ]
         .into_iter()
         .filter_map(|(name, holds)| holds.then_some(name))

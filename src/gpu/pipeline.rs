@@ -17,6 +17,8 @@ pub struct Pipeline {
     pub pipeline: wgpu::ComputePipeline,
     /// Bytes that the shader writes for a pixel.
     pub pixel_bytes: u64,
+    /// Samples whose offsets the shader reads, for each pixel; 0 where it does not.
+    pub offsets: u32,
     /// Seconds for compiling, and for packing and uploading.
     pub seconds: [f64; 2],
     buffers: Vec<(u32, wgpu::Buffer)>,
@@ -47,16 +49,22 @@ impl Pipeline {
         Ok(Self {
             pipeline,
             pixel_bytes: if features.values { 16 } else { 4 },
+            offsets: if features.names().contains("course") { features.samples } else { 0 },
             seconds: [compile_seconds, upload_seconds],
             buffers,
         })
     }
 
-    /// Binds the scene, a job and a buffer for its pixels.
-    pub fn bind(&self, gpu: &Gpu, job: &wgpu::Buffer, pixels: &wgpu::Buffer) -> wgpu::BindGroup {
-        let own = [(0, job), (1, pixels)];
+    /// Binds the scene, a job, a buffer for its pixels, and one for the offsets of its samples if they are read.
+    pub fn bind(
+        &self,
+        gpu: &Gpu,
+        job: &wgpu::Buffer,
+        pixels: &wgpu::Buffer,
+        offsets: Option<&wgpu::Buffer>,
+    ) -> wgpu::BindGroup {
+        let own = [(0, job), (1, pixels)].into_iter().chain(offsets.map(|offsets| (16, offsets)));
         let entries: Vec<_> = own
-            .into_iter()
             .chain(self.buffers.iter().map(|(binding, buffer)| (*binding, buffer)))
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
             .collect();
@@ -78,13 +86,23 @@ fn upload(gpu: &Gpu, packed: &Packed, features: &FeatureSet) -> Result<Vec<(u32,
         }
         Ok(())
     };
-    add("objects", 2, "objects", bytes(&packed.objects))?;
+    add("ambient_only", 2, "objects", bytes(&packed.objects))?;
     add("plane_loop", 3, "planes", bytes(&packed.planes))?;
-    add("small_sphere_buffer", 4, "spheres", bytes(&packed.small_spheres))?;
-    add("wide_sphere_buffer", 5, "wide spheres", bytes(&packed.wide_spheres))?;
-    add("bvh", 8, "tree nodes", bytes(&packed.bvh))?;
-    add("tiled", 6, "tiled planes", bytes(&packed.tiled_planes))?;
-    add("pplane", 7, "procedural planes", bytes(&packed.pplanes))?;
+    add("rectangle_loop", 4, "finite planes", bytes(&packed.rectangles))?;
+    add("small_sphere_buffer", 5, "spheres", bytes(&packed.small_spheres))?;
+    add("wide_sphere_buffer", 6, "wide spheres", bytes(&packed.wide_spheres))?;
+    add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
+    add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
+    add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;
+    add("textured", 10, "texplanes", bytes(&packed.texplanes))?;
+    add("textured", 11, "texels", bytes(&packed.texels))?;
+    if let Some(lit) = &packed.lit {
+        add("lit", 2, "objects", bytes(&lit.objects))?;
+        add("lit", 12, "materials", bytes(&lit.materials))?;
+        add("lit", 13, "lights", bytes(&lit.lights))?;
+        add("world_planes", 14, "planes for all rays", bytes(&lit.planes))?;
+        add("world_spheres", 15, "spheres for all rays", bytes(&lit.spheres))?;
+    }
     gpu.check()?;
     Ok(buffers)
 }

@@ -5,7 +5,7 @@
 
 use std::time::Duration;
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
@@ -47,6 +47,9 @@ const PAD: f64 = 1.0 / 524_288.0;
 /// Coordinates beyond this would overflow an f32 when areas are compared; such spheres stay outside the tree.
 const REACH: f64 = 1e17;
 
+/// A slab test in f64 errs by a few 2⁻⁵³ of its distances.
+const SLACK: f64 = 1.0 + 1e-12;
+
 struct Boxed(Aabb);
 
 impl Boundable for Boxed {
@@ -55,11 +58,27 @@ impl Boundable for Boxed {
     }
 }
 
+/// A sphere's place and size, to f64 accuracy or so: the padding covers a few ulp many times over.
+pub trait Bounds {
+    /// The center from the viewpoint, in units of 2^scale.
+    fn center(&self) -> DVec3;
+    /// The radius, in the same units.
+    fn radius(&self) -> f64;
+}
+
+impl<R: Real> Bounds for Sphere<R> {
+    fn center(&self) -> DVec3 {
+        (self.toward * self.distance).approx()
+    }
+
+    fn radius(&self) -> f64 {
+        self.rho2.approx().sqrt() * self.distance.approx()
+    }
+}
+
 /// The padded box of a sphere, if f32 can hold it.
-fn padded<R: Real>(sphere: &Sphere<R>) -> Option<Boxed> {
-    let center = (sphere.toward * sphere.distance).approx();
-    // ρ² and |C| are a few ulp off in f64, which the padding covers many times over.
-    let radius = sphere.rho2.approx().sqrt() * sphere.distance.approx();
+fn padded(sphere: &impl Bounds) -> Option<Boxed> {
+    let (center, radius) = (sphere.center(), sphere.radius());
     let corner = |side: f64| {
         let at = |c: f64| {
             let bound = c + side * radius;
@@ -72,7 +91,7 @@ fn padded<R: Real>(sphere: &Sphere<R>) -> Option<Boxed> {
 
 /// Builds the tree over the spheres for which `eligible` holds, and puts those first, in the tree's order; the others
 /// follow in their own. None, and nothing moved, if they are too few.
-pub fn build<R: Real>(spheres: &mut Vec<Sphere<R>>, eligible: impl Fn(&Sphere<R>) -> bool) -> Option<Bvh> {
+pub fn build<S: Bounds>(spheres: &mut Vec<S>, eligible: impl Fn(&S) -> bool) -> Option<Bvh> {
     let boxes: Vec<Option<Boxed>> =
         spheres.iter().map(|s| if eligible(s) { padded(s) } else { None }).collect();
     let inside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_some()).collect();
@@ -93,8 +112,8 @@ pub fn build<R: Real>(spheres: &mut Vec<Sphere<R>>, eligible: impl Fn(&Sphere<R>
         })
         .collect();
     let order = tree.primitive_indices.iter().map(|&i| inside[i as usize]).chain(outside);
-    let sorted: Vec<Sphere<R>> = order.map(|i| spheres[i]).collect();
-    *spheres = sorted;
+    let mut unsorted: Vec<Option<S>> = std::mem::take(spheres).into_iter().map(Some).collect();
+    spheres.extend(order.filter_map(|i| unsorted[i].take()));
     let depth = depth(&nodes);
     Some(Bvh { nodes, depth, len: inside.len() })
 }
@@ -114,18 +133,18 @@ fn depth(nodes: &[Node]) -> usize {
 }
 
 impl Node {
-    /// Where the ray from the viewpoint along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
-    /// components.
-    pub fn enters(&self, inverse: [f64; 3]) -> Option<f64> {
+    /// Where the ray from `base` along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
+    /// components. The slack covers the roundings of the test itself, which are relative.
+    pub fn enters(&self, base: [f64; 3], inverse: [f64; 3]) -> Option<f64> {
         let mut near = 0.0_f64;
         let mut far = f64::INFINITY;
-        for axis in 0..3 {
-            let a = f64::from(self.min[axis]) * inverse[axis];
-            let b = f64::from(self.max[axis]) * inverse[axis];
+        for (((min, max), base), inverse) in self.min.iter().zip(&self.max).zip(base).zip(inverse) {
+            let a = (f64::from(*min) - base) * inverse;
+            let b = (f64::from(*max) - base) * inverse;
             near = near.max(a.min(b));
             far = far.min(a.max(b));
         }
-        (near <= far).then_some(near)
+        (near <= far * SLACK).then_some(near)
     }
 }
 

@@ -11,19 +11,48 @@
 pub mod bvh;
 pub mod camera;
 pub mod exact;
+pub mod material;
 pub mod plane;
 pub mod sphere;
 pub mod surface;
+pub mod world;
+
+use std::sync::Arc;
 
 use bvh::Bvh;
 
-use crate::real::{Real, V3};
-use crate::scene::{Scene, Shape};
+use crate::real::Real;
+use crate::scene::{Scene, Shape, Texels};
 
 pub use camera::Camera;
+pub use material::{Light, Material};
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use surface::Surface;
+pub use world::World;
+
+/// How the scene is looked at, beyond what it says itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// τ: a hit on a plane counts only where its z is ≤ this; 0 in the notes.
+    pub screen_tolerance: f64,
+    /// How far from its pixel's center a ray may pass, in pixels: 0, or ½ with several samples.
+    pub margin: f64,
+}
+
+impl View {
+    /// The view for a number of samples a pixel.
+    pub fn new(screen_tolerance: f64, samples: u32) -> Self {
+        Self { screen_tolerance, margin: if samples > 1 { 0.5 } else { 0.0 } }
+    }
+}
+
+impl From<f64> for View {
+    /// The view with this screen tolerance, a ray a pixel.
+    fn from(screen_tolerance: f64) -> Self {
+        Self::new(screen_tolerance, 1)
+    }
+}
 
 /// A scene made ready for tracing rays from its viewpoint, in the number type `R`.
 #[derive(Debug, Clone)]
@@ -40,21 +69,28 @@ pub struct Prepared<R> {
     pub surfaces: Vec<Surface<R>>,
     /// One for each object of the scene: index of its material.
     pub materials: Vec<usize>,
-    /// One for each material of the scene: its ambient reflectivity.
-    pub ambient: Vec<V3<R>>,
+    /// One for each object of the scene: whether it is a plane, not a sphere.
+    pub is_plane: Vec<bool>,
+    /// The materials of the scene.
+    pub palette: Vec<Material<R>>,
+    /// The textures of the scene.
+    pub textures: Vec<Arc<Texels>>,
+    /// What rays from elsewhere than the viewpoint need; None without lights, where there are no such rays.
+    pub world: Option<World<R>>,
 }
 
 impl<R: Real> Prepared<R> {
-    /// Prepares `scene` for the screen tolerance τ (0 in the notes).
-    pub fn new(scene: &Scene, screen_tolerance: f64) -> Self {
+    /// Prepares `scene`.
+    pub fn new(scene: &Scene, view: impl Into<View>) -> Self {
+        let view = view.into();
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
         let mut spheres = Vec::new();
         let mut surfaces = Vec::with_capacity(scene.objects.len());
         for (index, object) in scene.objects.iter().enumerate() {
             match object.shape {
-                Shape::Plane { normal, point, .. } => {
-                    planes.extend(Plane::new(&scene.camera, screen_tolerance, index, normal, point));
+                Shape::Plane { normal, point, extent } => {
+                    planes.extend(Plane::new(&scene.camera, view, index, normal, point, extent.as_ref()));
                 }
                 Shape::Sphere { center, radius } => {
                     spheres.extend(Sphere::new(&scene.camera, &camera, index, center, radius));
@@ -64,7 +100,11 @@ impl<R: Real> Prepared<R> {
         }
         let bvh = bvh::build(&mut spheres, |sphere| sphere.seen.is_some());
         let materials = scene.objects.iter().map(|object| object.material).collect();
-        let ambient = scene.materials.iter().map(|material| V3::exact(material.ambient)).collect();
-        Self { camera, planes, spheres, bvh, surfaces, materials, ambient }
+        let is_plane = scene.objects.iter().map(|object| matches!(object.shape, Shape::Plane { .. })).collect();
+        let palette = scene.materials.iter().map(Material::new).collect();
+        let textures = scene.textures.iter().map(|texture| Arc::clone(&texture.texels)).collect();
+        let lit = !scene.lights.is_empty();
+        let world = lit.then(|| World::new(scene, camera.scale, view.screen_tolerance));
+        Self { camera, planes, spheres, bvh, surfaces, materials, is_plane, palette, textures, world }
     }
 }

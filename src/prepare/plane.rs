@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::View;
 use super::camera::{origin, step};
-use super::exact::{Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, sub};
-use crate::real::Real;
+use super::exact::{Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, sub, two_to};
+use crate::real::{Real, V3};
 use crate::scene;
 
 /// A plane that some pixel's ray can hit.
@@ -13,7 +14,7 @@ use crate::scene;
 /// planes is the one of largest 1/s, with no division. The form's coefficients are quotients in which the length of the
 /// normal and the choice of Q cancel: taken exactly and rounded once, they are the same numbers for the same plane,
 /// however it is written, so that of coincident planes the first in the file wins.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Plane<R> {
     /// Index of the object.
     pub object: usize,
@@ -22,16 +23,71 @@ pub struct Plane<R> {
     /// Hit only where front\[0\]·x + front\[1\]·y + front\[2\] ≥ 0, with (x, y) the pixel: the rule H.z ≤ τ.
     /// None where that is so on the whole screen. The larger of the first two is ±1.
     pub front: Option<[R; 3]>,
+    /// The sides of a rectangle.
+    pub sides: Option<Sides<R>>,
+}
+
+/// The rectangle of a finite plane: p_i = rows\[i\]·P − origin\[i\] lies in [0, dimensions\[i\]] for i = 0 and 1.
+#[derive(Debug, Clone)]
+pub struct Extent<R> {
+    /// Unit vectors along the sides: xdir projected onto the plane, and normal × that.
+    pub rows: [V3<R>; 2],
+    /// rows\[i\]·(Q − V).
+    pub origin: [R; 2],
+    /// Lengths of the sides, in units of 2^scale.
+    pub dimensions: [R; 2],
+}
+
+/// The same as primary rays see it: on the ray s·W, p_i/s = forms\[i\]·(W.x, W.y, 1), linear in the ray.
+#[derive(Debug, Clone)]
+pub struct Sides<R> {
+    /// Coefficients of p_i/s over (W.x, W.y, 1).
+    pub forms: [[R; 3]; 2],
+    /// Lengths of the sides, in units of 2^scale.
+    pub dimensions: [R; 2],
+}
+
+impl<R: Real> Extent<R> {
+    /// Prepares a rectangle, positions from the viewpoint.
+    pub fn new(camera: &scene::Camera, scale: i32, normal: DVec3, point: DVec3, extent: &scene::Extent) -> Self {
+        let rows = rows(normal, extent.xdir);
+        let unit = R::exact(two_to(-scale));
+        let corner = (V3::exact(point) - V3::exact(camera.viewpoint)) * unit;
+        Self {
+            rows,
+            origin: rows.map(|row| row.dot(corner)),
+            dimensions: [R::exact(extent.dimensions.x) * unit, R::exact(extent.dimensions.y) * unit],
+        }
+    }
+
+    /// The coordinates of a point of the plane along the sides.
+    pub fn coordinates(&self, position: V3<R>) -> [R; 2] {
+        [self.rows[0].dot(position) - self.origin[0], self.rows[1].dot(position) - self.origin[1]]
+    }
+}
+
+/// Unit vectors along the sides of a rectangle: R0 = unit(xdir − (N·xdir)N), R1 = N × R0, N of unit length.
+pub fn rows<R: Real>(normal: DVec3, xdir: DVec3) -> [V3<R>; 2] {
+    // (N·N)·xdir − (N·xdir)·N points the same way, and is rational.
+    let (n, x) = (ratio3(normal), ratio3(xdir));
+    let (nn, nx) = (dot(&n, &n), dot(&n, &x));
+    let across = [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx);
+    let largest = across.iter().cloned().map(abs).fold(Ratio::ZERO, |a, b| if b > a { b } else { a });
+    let [a, b, c] = across.map(|c| R::ratio(&(c / &largest)));
+    let r0 = V3::new(a, b, c).unit();
+    let unit_normal = super::world::shortened::<R>(normal).unit();
+    [r0, unit_normal.cross(r0)]
 }
 
 impl<R: Real> Plane<R> {
     /// Prepares a plane; None if no ray through the screen can hit it.
     pub fn new(
         camera: &scene::Camera,
-        screen_tolerance: f64,
+        view: View,
         object: usize,
         normal: DVec3,
         point: DVec3,
+        extent: Option<&scene::Extent>,
     ) -> Option<Self> {
         let n = ratio3(normal);
         let v = ratio3(camera.viewpoint);
@@ -44,16 +100,27 @@ impl<R: Real> Plane<R> {
         let a = &n[0] / &k;
         let b = &n[1] / &k;
         let c = -(&n[2] * &v[2]) / &k;
-        let front = Front::new(camera, screen_tolerance, &a, &b, &c);
+        let front = Front::new(camera, view, &a, &b, &c);
         if front.never {
             return None;
         }
-        let unit = power_of_two(super::camera::exponent(camera.viewpoint.z));
-        Some(Self {
-            object,
-            inverse: [R::ratio(&(&a * &unit)), R::ratio(&(&b * &unit)), R::ratio(&c)],
-            front: (!front.always).then(|| front.form.map(|f| R::ratio(&f))),
-        })
+        let scale = super::camera::exponent(camera.viewpoint.z);
+        let unit = power_of_two(scale);
+        let inverse = [R::ratio(&(&a * &unit)), R::ratio(&(&b * &unit)), R::ratio(&c)];
+        let sides = extent.map(|extent| {
+            let extent = Extent::<R>::new(camera, scale, normal, point, extent);
+            let distance = R::ratio(&(&v[2] / &unit));
+            let form = |i: usize| {
+                let (row, origin) = (extent.rows[i], extent.origin[i]);
+                [
+                    row.x - origin * inverse[0],
+                    row.y - origin * inverse[1],
+                    -(row.z * distance) - origin * inverse[2],
+                ]
+            };
+            Sides { forms: [form(0), form(1)], dimensions: extent.dimensions }
+        });
+        Some(Self { object, inverse, front: (!front.always).then(|| front.form.map(|f| R::ratio(&f))), sides })
     }
 }
 
@@ -66,7 +133,7 @@ struct Front {
 
 impl Front {
     /// H.z = V.z·(1 − s) ≤ τ, with s > 0, is (V.z − τ)·(1/s) ≤ V.z.
-    fn new(camera: &scene::Camera, screen_tolerance: f64, a: &Ratio, b: &Ratio, c: &Ratio) -> Self {
+    fn new(camera: &scene::Camera, View { screen_tolerance, margin }: View, a: &Ratio, b: &Ratio, c: &Ratio) -> Self {
         let [width, height] = camera.pixeldim;
         let (dx, dy) = (step(width, camera.worlddim.x), step(height, camera.worlddim.y));
         let x0 = origin(width, camera.worlddim.x) - ratio(camera.viewpoint.x);
@@ -78,10 +145,9 @@ impl Front {
         let vz = ratio(camera.viewpoint.z);
         let reach = &vz - ratio(screen_tolerance);
         let mut form = [-(&reach * &per_x), -(&reach * &per_y), vz - &reach * &constant];
-        let at = |f: &[Ratio; 3], x: u32, y: u32| {
-            &f[0] * ratio(f64::from(x)) + &f[1] * ratio(f64::from(y)) + &f[2]
-        };
-        let corners = [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1)];
+        let at = |f: &[Ratio; 3], x: f64, y: f64| &f[0] * ratio(x) + &f[1] * ratio(y) + &f[2];
+        let (right, top) = (f64::from(width - 1) + margin, f64::from(height - 1) + margin);
+        let corners = [(-margin, -margin), (right, -margin), (-margin, top), (right, top)];
         let inverse = [per_x, per_y, constant];
         let always = corners.iter().all(|&(x, y)| at(&form, x, y) >= Ratio::ZERO);
         let never = corners.iter().all(|&(x, y)| at(&form, x, y) < Ratio::ZERO)

@@ -5,8 +5,9 @@ use glam::DVec3;
 
 use super::camera;
 use super::exact::{abs, is_zero, parity, power_of_two, ratio, ratio3};
-use crate::real::Real;
-use crate::scene::{self, Object, Shape};
+use super::plane::{Extent, rows};
+use crate::real::{Real, V3};
+use crate::scene::{self, Object, Shape, TextureMode};
 
 /// What modulates the ambient reflectivity of an object. Positions are from the viewpoint, in units of 2^scale.
 #[derive(Debug, Clone)]
@@ -19,15 +20,34 @@ pub enum Surface<R> {
     Pplane(Box<Pplane<R>>),
     /// A `psphere` with the shader of this number.
     Psphere(u32),
+    /// A `texplane`.
+    Textured(Box<Textured<R>>),
 }
 
-/// A `tiled_plane`: tile indices along world x and z, and the other material.
+/// A `tiled_plane`: tile indices along two directions, and the other material.
 #[derive(Debug, Clone, Copy)]
 pub struct Tiled<R> {
-    /// Tile index along x and along z.
+    /// The directions, if not world x and z.
+    pub rows: Option<[V3<R>; 2]>,
+    /// Tile indices along them.
     pub index: [TileIndex<R>; 2],
-    /// Index of the alternate material.
-    pub altmaterial: usize,
+    /// Material of the tiles whose indices add up to an even number, and of the others.
+    pub materials: [usize; 2],
+}
+
+/// A `texplane`: texel column and row are floor(p_i · per_unit\[i\]), p the coordinates on the rectangle.
+#[derive(Debug, Clone)]
+pub struct Textured<R> {
+    /// The rectangle.
+    pub extent: Extent<R>,
+    /// Texels a unit, along both sides.
+    pub per_unit: [R; 2],
+    /// Index of the texture.
+    pub texture: usize,
+    /// Columns and rows of the texture.
+    pub size: [u32; 2],
+    /// Whether the picture repeats (mode 1); else it is stretched, and indices are clamped.
+    pub repeats: bool,
 }
 
 /// A `pplane`: the shader, and what the shaders may ask about a hit point.
@@ -48,7 +68,7 @@ pub struct Pplane<R> {
 pub struct TileIndex<R> {
     /// 2^scale / d; 0 where the coordinate is the plane's own.
     pub per_unit: R,
-    /// In [0, 1); ½ where the coordinate is the plane's own, far from every edge.
+    /// In [0, 1), or next to it; ½ where the coordinate is the plane's own, far from every edge.
     pub fraction: R,
     /// 0 or 1.
     pub parity: u32,
@@ -75,9 +95,52 @@ impl<R: Real> Surface<R> {
         let view = scene.camera.viewpoint;
         let scale = camera::exponent(view.z);
         match (object.surface, &object.shape) {
-            (scene::Surface::Tiled { dimension, altmaterial, .. }, Shape::Plane { normal, point, .. }) => {
-                let index = |axis, d| TileIndex::new(view[axis], own(*normal, *point, axis), TILE_SHIFT, d, scale);
-                Self::Tiled(Box::new(Tiled { index: [index(0, dimension.x), index(2, dimension.y)], altmaterial }))
+            (scene::Surface::Tiled { dimension, altmaterial, xdir }, Shape::Plane { normal, point, .. }) => {
+                let plain = object.material;
+                Self::Tiled(Box::new(match xdir {
+                    None => {
+                        let index =
+                            |axis, d| TileIndex::new(view[axis], own(*normal, *point, axis), TILE_SHIFT, d, scale);
+                        Tiled {
+                            rows: None,
+                            index: [index(0, dimension.x), index(2, dimension.y)],
+                            materials: [plain, altmaterial],
+                        }
+                    }
+                    // With xdir the course's program has the two materials the other way round.
+                    Some(xdir) => {
+                        let rows = rows(*normal, xdir);
+                        let index = |i: usize, d| TileIndex::along(rows[i].dot(V3::exact(view)), d, scale);
+                        Tiled {
+                            rows: Some(rows),
+                            index: [index(0, dimension.x), index(1, dimension.y)],
+                            materials: [altmaterial, plain],
+                        }
+                    }
+                }))
+            }
+            (
+                scene::Surface::Textured { texture, mode },
+                Shape::Plane { normal, point, extent: Some(extent) },
+            ) => {
+                let extent = Extent::new(&scene.camera, scale, *normal, *point, extent);
+                let texels = &scene.textures[texture].texels;
+                let size = [texels.width, texels.height];
+                let camera = &scene.camera;
+                let per_unit = [0, 1].map(|i| match mode {
+                    TextureMode::Fit => R::exact(f64::from(size[i])) / extent.dimensions[i],
+                    // A texel is as large as a pixel of the screen.
+                    TextureMode::Tile => R::ratio(
+                        &(power_of_two(scale) * ratio(f64::from(camera.pixeldim[i])) / ratio(camera.worlddim[i])),
+                    ),
+                });
+                Self::Textured(Box::new(Textured {
+                    extent,
+                    per_unit,
+                    texture,
+                    size,
+                    repeats: mode == TextureMode::Tile,
+                }))
             }
             (scene::Surface::Procedural { shader }, Shape::Plane { normal, point, .. }) => {
                 let index =
@@ -114,6 +177,19 @@ impl<R: Real> TileIndex<R> {
             per_unit: R::ratio(&(power_of_two(scale) / abs(ratio(d)))),
             fraction: R::ratio(&(index - Ratio::from(whole.clone()))),
             parity: parity(&whole),
+        }
+    }
+
+    /// The index along a direction in which the viewpoint's coordinate is `view`.
+    fn along(view: R, d: f64, scale: i32) -> Self {
+        let d = R::exact(d);
+        let index = (view + R::exact(TILE_SHIFT)) / d;
+        // Any whole number near the index will do: what is left need not lie in [0, 1).
+        let whole = index.approx().floor();
+        Self {
+            per_unit: R::exact(super::exact::two_to(scale)) / d,
+            fraction: index - R::exact(whole),
+            parity: whole.rem_euclid(2.0) as u32,
         }
     }
 

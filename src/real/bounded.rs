@@ -92,6 +92,23 @@ impl Real for Bounded {
         Self::rounded(value, carried)
     }
 
+    fn pow(self, exponent: f64) -> Self {
+        // d(xⁿ) = n·xⁿ⁻¹·dx; the library's own error is taken as 2⁻⁵⁰, since none is promised.
+        let value = self.value.powf(exponent);
+        let least = self.value - self.error;
+        if least <= 0.0 {
+            return Self { value, error: f64::INFINITY };
+        }
+        let slope = exponent.abs() * value.max(least.powf(exponent)).max((self.value + self.error).powf(exponent));
+        Self::rounded(value, slope * self.error / least + 8.0 * U * value)
+    }
+
+    fn cos_degrees(angle: f64) -> Self {
+        let value = f64::cos_degrees(angle);
+        let exact = [60.0, 90.0, 120.0, 180.0].contains(&angle);
+        if exact { Self::exact(value) } else { Self { value, error: 8.0 * U } }
+    }
+
     fn sign(self) -> Result<Ordering, Undecided> {
         if self.error == 0.0 || self.value.abs() > self.error { self.value.sign() } else { Err(Undecided) }
     }

@@ -22,6 +22,22 @@ impl Real for f64 {
     }
 
     #[inline]
+    fn pow(self, exponent: f64) -> Self {
+        self.powf(exponent)
+    }
+
+    fn cos_degrees(angle: f64) -> Self {
+        // The angles whose cosines are rational have them exactly.
+        match angle {
+            60.0 => 0.5,
+            90.0 => 0.0,
+            120.0 => -0.5,
+            180.0 => -1.0,
+            _ => angle.to_radians().cos(),
+        }
+    }
+
+    #[inline]
     fn sign(self) -> Result<Ordering, Undecided> {
         self.partial_cmp(&0.0).ok_or(Undecided)
     }

@@ -42,6 +42,12 @@ pub trait Real:
     /// The square root of a number that is not negative.
     fn sqrt(self) -> Self;
 
+    /// The number, which is > 0, to the power of `exponent`.
+    fn pow(self, exponent: f64) -> Self;
+
+    /// The cosine of an angle of 0 to 180 degrees.
+    fn cos_degrees(angle: f64) -> Self;
+
     /// The sign of the number, if it is certain.
     fn sign(self) -> Result<Ordering, Undecided>;
 

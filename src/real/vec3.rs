@@ -44,6 +44,32 @@ impl<R: Real> V3<R> {
         )
     }
 
+    /// The vector of unit length in the same direction; the vector is not zero.
+    #[inline]
+    pub fn unit(self) -> Self {
+        let length = self.dot(self).sqrt();
+        Self::new(self.x / length, self.y / length, self.z / length)
+    }
+
+    /// The product by components: a colour through a filter.
+    #[inline]
+    pub fn each(self, other: Self) -> Self {
+        Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+
+    /// The component along an axis.
+    #[inline]
+    pub fn axis(self, axis: usize) -> R {
+        [self.x, self.y, self.z][axis]
+    }
+
+    /// The vector with one component replaced.
+    #[inline]
+    pub fn with_axis(mut self, axis: usize, value: R) -> Self {
+        *[&mut self.x, &mut self.y, &mut self.z][axis] = value;
+        self
+    }
+
     /// f64 values near the components.
     pub fn approx(self) -> glam::DVec3 {
         glam::DVec3::new(self.x.approx(), self.y.approx(), self.z.approx())

@@ -2,24 +2,22 @@
 //!
 //! Stands between the tracers (`gpu`, `cpu`) and what takes the rows (`image`, the preview, a test).
 
+mod job;
+
 use std::io;
 use std::ops::Range;
 use std::time::Instant;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cpu::camera::camera_setpix;
-use crate::cpu::trace::ray_trace;
+use crate::cpu::pixel::Jitter;
+use crate::cpu::trace::Limits;
 use crate::gpu::bands::BandError;
-use crate::gpu::compose::compose;
-use crate::gpu::device::Gpu;
-use crate::gpu::features::FeatureSet;
-use crate::gpu::pack::Packed;
-use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{self, GpuError};
-use crate::prepare::Prepared;
-use crate::scene::{self, Scene, Shape};
+use crate::jitter::Course;
+use crate::prepare::{Prepared, View};
+use crate::scene::Scene;
+use job::Job;
 
 /// What to render, beyond what the scene says.
 #[derive(Debug, Clone)]
@@ -30,6 +28,12 @@ pub struct Settings {
     pub screen_tolerance: f64,
     /// Which tracer.
     pub backend: Backend,
+    /// Rays a pixel: 1 goes through its middle, more are spread and their mean is taken.
+    pub samples: u32,
+    /// How several samples are spread.
+    pub jitter: Spread,
+    /// How far rays are followed.
+    pub limits: Limits,
     /// Part of the name of the adapter to use, in any case of letters.
     pub adapter: Option<String>,
     /// CPU threads; all cores without.
@@ -40,8 +44,41 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { rows: None, screen_tolerance: 0.0, backend: Backend::Auto, adapter: None, threads: None, values: false }
+        Self {
+            rows: None,
+            screen_tolerance: 0.0,
+            samples: 1,
+            jitter: Spread::Hash,
+            limits: Limits::default(),
+            backend: Backend::Auto,
+            adapter: None,
+            threads: None,
+            values: false,
+        }
     }
+}
+
+/// How the samples of a pixel are spread over it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Spread {
+    /// By a hash of column, row and sample: any row can be rendered alone.
+    #[default]
+    Hash,
+    /// As the course's program did, by the C library's `random()`.
+    Course,
+}
+
+/// A pixel that needs more rays than allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("pixel ({x}, {y}) needs more than {max_rays} rays for one sample: mirrors and transparent surfaces multiply them; --max-rays allows more, --max-path fewer")]
+pub struct PixelFault {
+    /// Column, from the left.
+    pub x: u32,
+    /// Row, from the bottom.
+    pub y: u32,
+    /// How many were allowed.
+    pub max_rays: u32,
 }
 
 /// Which tracer renders.
@@ -82,6 +119,12 @@ pub struct Report {
     pub rows: [u32; 2],
     /// The screen tolerance τ.
     pub screen_tolerance: f64,
+    /// Rays a pixel.
+    pub samples: u32,
+    /// How several samples were spread.
+    pub jitter: Option<Spread>,
+    /// The longest path, in world units, if there were lights to make paths.
+    pub max_path: Option<f64>,
     /// Which tracer rendered: `gpu` or `cpu`.
     pub backend: Backend,
     /// Adapter and driver, if the GPU rendered.
@@ -122,9 +165,6 @@ pub struct Seconds {
 /// Why a rendering failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The scene uses what plumb reads but does not render yet.
-    #[error("not rendered yet: {0}")]
-    NotYet(String),
     /// The rows asked for are not of the picture.
     #[error("rows {start}..{end} are not rows of a picture {height} high: rows count from 0 at the bottom, the end not included")]
     Rows {
@@ -135,6 +175,9 @@ pub enum Error {
         /// Rows of the picture.
         height: u32,
     },
+    /// A sample needs more rays than allowed.
+    #[error(transparent)]
+    TooManyRays(#[from] PixelFault),
     /// The GPU's fault.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -150,6 +193,7 @@ impl From<BandError> for Error {
     fn from(error: BandError) -> Self {
         match error {
             BandError::Gpu(error) => Self::Gpu(error),
+            BandError::Pixel(error) => Self::TooManyRays(error),
             BandError::Emit(error) => Self::Emit(error),
         }
     }
@@ -169,9 +213,6 @@ pub fn install_hint() -> &'static str {
 /// Renders `scene` and hands each finished band to `emit`, from the top of the picture down.
 pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result<Report, Error> {
     let start = Instant::now();
-    if let Some(what) = not_yet(scene) {
-        return Err(Error::NotYet(what));
-    }
     let [width, height] = scene.camera.pixeldim;
     let rows = settings.rows.clone().unwrap_or(0..height);
     if rows.is_empty() || rows.end > height {
@@ -182,6 +223,9 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
         height,
         rows: [rows.start, rows.end],
         screen_tolerance: settings.screen_tolerance,
+        samples: settings.samples,
+        jitter: (settings.samples > 1).then_some(settings.jitter),
+        max_path: (!scene.lights.is_empty()).then_some(settings.limits.max_path),
         backend: Backend::Cpu,
         adapter: None,
         fallback: None,
@@ -203,143 +247,23 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
             Err(error) => return Err(error.into()),
         },
     };
-    let prepared = Prepared::new(scene, settings.screen_tolerance);
+    let job = Job {
+        prepared: Prepared::new(scene, View::new(settings.screen_tolerance, settings.samples)),
+        jitter: match (settings.samples, settings.jitter) {
+            (0 | 1, _) => Jitter::Once,
+            (samples, Spread::Hash) => Jitter::Hash(samples),
+            (samples, Spread::Course) => Jitter::Course(Course::new(width, rows.end, samples)),
+        },
+        // Where the values themselves are wanted, those above 1 count too.
+        limits: Limits { enough: if settings.values { f64::INFINITY } else { f64::from(settings.samples) }, ..settings.limits },
+        width,
+        rows,
+        settings,
+    };
     match gpu {
-        Some(gpu) => render_gpu(&gpu, &prepared, width, rows, settings, emit, &mut report)?,
-        None => render_cpu(&prepared, width, rows, settings, emit, &mut report)?,
+        Some(gpu) => job.on_gpu(&gpu, emit, &mut report)?,
+        None => job.on_cpu(emit, &mut report)?,
     }
     report.seconds.total = start.elapsed().as_secs_f64();
     Ok(report)
-}
-
-fn render_gpu(
-    gpu: &Gpu,
-    prepared: &Prepared<f64>,
-    width: u32,
-    rows: Range<u32>,
-    settings: &Settings,
-    emit: &mut Emit<'_>,
-    report: &mut Report,
-) -> Result<(), Error> {
-    let start = Instant::now();
-    let packed = Packed::new(prepared);
-    let (found, allowed) = (packed.loop_iterations(), gpu::compose::LOOP_ITERATIONS);
-    if found > allowed {
-        return Err(GpuError::TooMany { found, allowed }.into());
-    }
-    let features = FeatureSet::new(&packed, settings.values);
-    let wgsl = compose(&packed, &features);
-    let packing = start.elapsed().as_secs_f64();
-    let refine = |x: u32, y: u32| trace_pixel(prepared, f64::from(x), f64::from(y));
-    let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl)?;
-    let times = gpu::bands::run(gpu, &pipeline, width, rows, packed.tests(), &refine, emit)?;
-    report.refined = times.refined;
-    report.backend = Backend::Gpu;
-    report.adapter = Some(gpu.name.clone());
-    report.bands = times.bands;
-    let [instance, device] = gpu.seconds;
-    let [compile, upload] = pipeline.seconds;
-    report.seconds = Seconds {
-        instance,
-        device,
-        compile,
-        upload: packing + upload,
-        kernel: times.kernel,
-        readback: times.readback,
-        emit: times.emit,
-        total: 0.0,
-    };
-    Ok(())
-}
-
-fn render_cpu(
-    prepared: &Prepared<f64>,
-    width: u32,
-    rows: Range<u32>,
-    settings: &Settings,
-    emit: &mut Emit<'_>,
-    report: &mut Report,
-) -> Result<(), Error> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.threads.unwrap_or(0))
-        .build()
-        .map_err(|error| Error::Threads(error.to_string()))?;
-    report.threads = Some(pool.current_num_threads());
-    let tests = prepared.planes.len()
-        + prepared.bvh.as_ref().map_or(prepared.spheres.len(), |bvh| prepared.spheres.len() - bvh.len + 8 * bvh.depth);
-    let mut end = rows.end;
-    while end > rows.start {
-        let kernel = Instant::now();
-        let height = cpu_band_rows(width, tests).min(end - rows.start);
-        let band = pool.install(|| cpu_band(prepared, width, end - height..end, settings.values));
-        report.seconds.kernel += kernel.elapsed().as_secs_f64();
-        let emitting = Instant::now();
-        emit(&band)?;
-        report.seconds.emit += emitting.elapsed().as_secs_f64();
-        report.bands += 1;
-        end -= height;
-    }
-    Ok(())
-}
-
-/// Rows of a band on the CPU: about a megapixel, fewer where a pixel is slow, so that progress shows.
-fn cpu_band_rows(width: u32, tests: usize) -> u32 {
-    let pixels = (1 << 26) / (tests as u64 + 64);
-    (pixels / u64::from(width)).clamp(1, 1 << 20) as u32
-}
-
-/// Traces a band on the CPU, pixels in parallel.
-fn cpu_band(prepared: &Prepared<f64>, width: u32, rows: Range<u32>, values: bool) -> Band {
-    let width = width as usize;
-    let pixels = width * (rows.end - rows.start) as usize;
-    let mut rgb = vec![0; 3 * pixels];
-    let mut floats = if values { vec![[0.0; 3]; pixels] } else { Vec::new() };
-    // Pieces small enough to share out, large enough not to cost.
-    let piece = (pixels / (8 * rayon::current_num_threads())).clamp(64, 8192);
-    let trace = |i: usize| {
-        let (x, y) = (i % width, rows.end as usize - 1 - i / width);
-        trace_pixel(prepared, x as f64, y as f64)
-    };
-    rgb.par_chunks_mut(3 * piece).enumerate().for_each(|(k, chunk)| {
-        for (i, pixel) in chunk.chunks_exact_mut(3).enumerate() {
-            pixel.copy_from_slice(&trace(k * piece + i).1);
-        }
-    });
-    floats.par_chunks_mut(piece).enumerate().for_each(|(k, chunk)| {
-        for (i, pixel) in chunk.iter_mut().enumerate() {
-            *pixel = trace(k * piece + i).0;
-        }
-    });
-    Band { rows, rgb, values: values.then_some(floats) }
-}
-
-/// Value and bytes of a pixel in f64, which decides every comparison (NaN apart, which no scene within its limits makes:
-/// such a pixel stays black).
-fn trace_pixel(prepared: &Prepared<f64>, x: f64, y: f64) -> ([f32; 3], [u8; 3]) {
-    let Ok(traced) = ray_trace(prepared, x, y) else { return ([0.0; 3], [0; 3]) };
-    let color = traced.color;
-    ([color.x as f32, color.y as f32, color.z as f32], camera_setpix(color).unwrap_or_default())
-}
-
-/// What of the scene is read and checked, but not rendered yet.
-pub fn not_yet(scene: &Scene) -> Option<String> {
-    let mut what = Vec::new();
-    for light in &scene.lights {
-        what.push(format!("{} `{}`", light.entity(), light.name));
-    }
-    for object in &scene.objects {
-        let waits = match (&object.shape, object.surface) {
-            (Shape::Plane { extent: Some(_), .. }, _) => true,
-            (_, scene::Surface::Tiled { xdir, .. }) => xdir.is_some(),
-            (_, scene::Surface::Textured { .. }) => true,
-            _ => false,
-        };
-        if waits {
-            let xdir = if object.entity() == "tiled_plane" { " with xdir" } else { "" };
-            what.push(format!("{} `{}`{xdir}", object.entity(), object.name));
-        }
-    }
-    let more = what.len().saturating_sub(5);
-    what.truncate(5);
-    (!what.is_empty()).then(|| what.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() })
 }

@@ -1,0 +1,126 @@
+//! Twin of `shaders/light.wgsl`: what a light brings to a hit point.
+
+use super::surface::{Point, getdiff, tile_material};
+use super::world::{Range, Toward, closest_from};
+use crate::prepare::exact::two_to;
+use crate::prepare::{Light, Prepared, World};
+use crate::real::{Real, Undecided, V3};
+
+/// What a light does at a hit point.
+#[derive(Debug, Clone, Copy)]
+pub enum Lit<R> {
+    /// It lies exactly there.
+    AtLight,
+    /// It lies behind the surface.
+    FacesAway,
+    /// The point is outside its cone.
+    OutsideCone,
+    /// An object, by its index, keeps it off.
+    Shadowed(usize),
+    /// It lights the point.
+    Lit {
+        /// The diffuse term.
+        diffuse: V3<R>,
+        /// The glint term.
+        glint: V3<R>,
+        /// The share of the light that came through what it had to pass.
+        filter: V3<R>,
+    },
+}
+
+/// The unit normal at a hit point, as the scene gives it or outward.
+pub fn normal_at<R: Real>(world: &World<R>, is_plane: bool, point: &Point<R>) -> V3<R> {
+    if is_plane { world.planes[world.places[point.object]].normal } else { point.from_center.unit() }
+}
+
+/// What light number `number` brings to a point with unit normal `normal`, seen by a ray from `base`.
+pub fn light_term<R: Real>(
+    scene: &Prepared<R>,
+    world: &World<R>,
+    number: usize,
+    point: &Point<R>,
+    normal: V3<R>,
+    base: V3<R>,
+) -> Result<Lit<R>, Undecided> {
+    let light = &world.lights[number];
+    let toward = light.location - point.position;
+    let distance2 = toward.dot(toward);
+    if !distance2.positive()? {
+        return Ok(Lit::AtLight);
+    }
+    let distance = distance2.sqrt();
+    let d = V3::new(toward.x / distance, toward.y / distance, toward.z / distance);
+    let level = scene.is_plane[point.object]
+        && world.planes[world.places[point.object]].level.binary_search(&number).is_ok();
+    let c = d.dot(normal);
+    if level || !c.positive()? {
+        return Ok(Lit::FacesAway);
+    }
+    if !in_cone(light, d)? {
+        return Ok(Lit::OutsideCone);
+    }
+    let filter = match shadow(scene, world, point, d, Toward { number, distance })? {
+        Ok(filter) => filter,
+        Err(blocker) => return Ok(Lit::Shadowed(blocker)),
+    };
+    let falloff = c / distance * R::exact(two_to(-scene.camera.scale));
+    let diffuse = getdiff(scene, point)?.each(light.emissivity).each(filter) * falloff;
+    let glint = glint(scene, light, point, normal, base, d)?;
+    Ok(Lit::Lit { diffuse, glint, filter })
+}
+
+/// Whether a point is in the light's cone; `d` is the unit vector from the point to the light.
+fn in_cone<R: Real>(light: &Light<R>, d: V3<R>) -> Result<bool, Undecided> {
+    match &light.cone {
+        None => Ok(true),
+        Some((axis, cosine)) => (-axis.dot(d) - *cosine).positive(),
+    }
+}
+
+/// The share of the light that reaches the point along `d`, or the object that keeps it off.
+fn shadow<R: Real>(
+    scene: &Prepared<R>,
+    world: &World<R>,
+    point: &Point<R>,
+    d: V3<R>,
+    light: Toward<R>,
+) -> Result<Result<V3<R>, usize>, Undecided> {
+    let one = R::exact(1.0);
+    let mut filter = V3::new(one, one, one);
+    let mut range = Range { skip: Some(world.groups[point.object]), beyond: None, light: Some(light) };
+    while let Some(met) = closest_from(world, point.position, d, &range)? {
+        let object = met.point.object;
+        let material = &scene.palette[scene.materials[object]];
+        if !material.clear {
+            return Ok(Err(object));
+        }
+        let tint = scene.palette[tile_material(scene, &met.point)?].tint;
+        filter = filter.each(tint) * material.transparency;
+        range.skip = Some(world.groups[object]);
+        range.beyond = Some(met.t);
+    }
+    Ok(Ok(filter))
+}
+
+/// The glint: specular ∘ E · (h·N)ⁿ, h the unit vector halfway between the ways back and to the light.
+fn glint<R: Real>(
+    scene: &Prepared<R>,
+    light: &Light<R>,
+    point: &Point<R>,
+    normal: V3<R>,
+    base: V3<R>,
+    d: V3<R>,
+) -> Result<V3<R>, Undecided> {
+    let zero = V3::new(R::zero(), R::zero(), R::zero());
+    let material = &scene.palette[scene.materials[point.object]];
+    if material.shininess == 0.0 || !material.mirror {
+        return Ok(zero);
+    }
+    let half = (base - point.position).unit() + d;
+    let along = half.dot(normal);
+    if !along.positive()? {
+        return Ok(zero);
+    }
+    let cosine = along / half.dot(half).sqrt();
+    Ok(material.specular.each(light.emissivity) * cosine.pow(material.shininess))
+}

@@ -1,0 +1,145 @@
+//! A pixel from its samples: the notes' `make_pixel`, and whole bands of pixels on all cores.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::camera::camera_setpix;
+use super::trace::{Fault, Limits, Unwatched, ray_trace};
+use crate::jitter::{self, Course};
+use crate::prepare::Prepared;
+use crate::real::{Real, V3};
+use crate::render::{Band, PixelFault};
+
+/// Which rays a pixel is made of.
+#[derive(Debug, Clone, Copy)]
+pub enum Sampling<'a> {
+    /// One, through its middle.
+    Once,
+    /// This many, spread by the hash.
+    Hash(u32),
+    /// As the course's program spread them: the offsets of this pixel.
+    Given(&'a [[f64; 2]]),
+}
+
+/// The value of pixel (x, y), counted from the bottom left: the mean of its samples.
+pub fn make_pixel<R: Real>(
+    scene: &Prepared<R>,
+    limits: &Limits,
+    sampling: Sampling<'_>,
+    x: u32,
+    y: u32,
+) -> Result<V3<R>, Fault> {
+    let (px, py) = (f64::from(x), f64::from(y));
+    let at = |[a, b]: [f64; 2]| ray_trace(scene, limits, px + a, py + b, &mut Unwatched).map(|traced| traced.color);
+    let mut sum = V3::new(R::zero(), R::zero(), R::zero());
+    let count = match sampling {
+        Sampling::Once => return at([0.0, 0.0]),
+        Sampling::Hash(samples) => {
+            for sample in 0..samples {
+                sum = sum + at(jitter::hash(x, y, sample))?;
+            }
+            samples
+        }
+        Sampling::Given(offsets) => {
+            for offset in offsets {
+                sum = sum + at(*offset)?;
+            }
+            offsets.len() as u32
+        }
+    };
+    let n = R::exact(f64::from(count));
+    Ok(V3::new(sum.x / n, sum.y / n, sum.z / n))
+}
+
+/// How the pixels of a band are sampled.
+#[derive(Debug, Clone)]
+pub enum Jitter {
+    /// One ray a pixel.
+    Once,
+    /// Several, spread by the hash.
+    Hash(u32),
+    /// Several, as the course's program spread them.
+    Course(Course),
+}
+
+impl Jitter {
+    /// The offsets of a row, where they are not computed pixel by pixel.
+    pub fn row(&self, y: u32) -> Option<Vec<[f64; 2]>> {
+        if let Self::Course(course) = self { Some(course.row(y)) } else { None }
+    }
+
+    /// The samples of pixel `x` in a row with these offsets.
+    pub fn pixel<'a>(&self, row: Option<&'a [[f64; 2]]>, width: usize, x: usize) -> Sampling<'a> {
+        match (self, row) {
+            (Self::Hash(samples), _) => Sampling::Hash(*samples),
+            (Self::Course(_), Some(row)) => {
+                let samples = row.len() / width;
+                Sampling::Given(&row[x * samples..(x + 1) * samples])
+            }
+            _ => Sampling::Once,
+        }
+    }
+}
+
+/// Value and bytes of a pixel in f64, which decides every comparison. (NaN apart: no scene within its limits makes one but
+/// by overflow, and such a pixel stays black.)
+pub fn trace_pixel(
+    scene: &Prepared<f64>,
+    limits: &Limits,
+    sampling: Sampling<'_>,
+    x: u32,
+    y: u32,
+) -> Result<([f32; 3], [u8; 3]), PixelFault> {
+    match make_pixel(scene, limits, sampling, x, y) {
+        Ok(v) => Ok(([v.x as f32, v.y as f32, v.z as f32], camera_setpix(v).unwrap_or_default())),
+        Err(Fault::Undecided) => Ok(([0.0; 3], [0; 3])),
+        Err(Fault::TooManyRays) => Err(PixelFault { x, y, max_rays: limits.max_rays }),
+    }
+}
+
+/// Traces a band on the CPU, pixels in parallel on the current thread pool.
+pub fn make_band(
+    scene: &Prepared<f64>,
+    limits: &Limits,
+    jitter: &Jitter,
+    width: u32,
+    rows: Range<u32>,
+    values: bool,
+) -> Result<Band, PixelFault> {
+    let width = width as usize;
+    let pixels = width * (rows.end - rows.start) as usize;
+    let mut rgb = vec![0; 3 * pixels];
+    let mut floats = if values { vec![[0.0; 3]; pixels] } else { Vec::new() };
+    // Pieces of rows, small enough to share out, large enough not to cost.
+    let piece = (pixels / (8 * rayon::current_num_threads())).clamp(64, 8192).min(width);
+    let top = rows.end - 1;
+    // Beside each line of bytes its line of values, or nothing.
+    let value_lines: Vec<Option<&mut [[f32; 3]]>> = split(values.then_some(&mut floats[..]), width, rows.len());
+    rgb.par_chunks_mut(3 * width).zip(value_lines).enumerate().try_for_each(|(line, (bytes, values))| {
+        let y = top - line as u32;
+        let offsets = jitter.row(y);
+        let pieces = split(values, piece, width.div_ceil(piece));
+        bytes.par_chunks_mut(3 * piece).zip(pieces).enumerate().try_for_each(|(k, (bytes, mut values))| {
+            for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                let x = k * piece + i;
+                let sampling = jitter.pixel(offsets.as_deref(), width, x);
+                let (value, three) = trace_pixel(scene, limits, sampling, x as u32, y)?;
+                pixel.copy_from_slice(&three);
+                if let Some(values) = &mut values {
+                    values[i] = value;
+                }
+            }
+            Ok(())
+        })
+    })?;
+    Ok(Band { rows, rgb, values: values.then_some(floats) })
+}
+
+/// Pieces of `size`, or as many nothings.
+fn split<T>(values: Option<&mut [T]>, size: usize, count: usize) -> Vec<Option<&mut [T]>> {
+    match values {
+        Some(values) => values.chunks_mut(size).map(Some).collect(),
+        None => (0..count).map(|_| None).collect(),
+    }
+}

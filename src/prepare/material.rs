@@ -1,0 +1,75 @@
+//! Materials and lights in the tracer's number type.
+
+use super::exact::two_to;
+use crate::real::{Real, V3};
+use crate::scene;
+
+/// How a surface answers light.
+#[derive(Debug, Clone, Copy)]
+pub struct Material<R> {
+    /// Ambient reflectivity.
+    pub ambient: V3<R>,
+    /// Diffuse reflectivity.
+    pub diffuse: V3<R>,
+    /// Specular reflectivity: of the mirror image and of the glint.
+    pub specular: V3<R>,
+    /// Exponent of the glint; 0 for none.
+    pub shininess: f64,
+    /// Share of light that goes straight through.
+    pub transparency: R,
+    /// What tints light that goes through: K/max(K), K the diffuse reflectivity; white where that is black.
+    pub tint: V3<R>,
+    /// Whether any light goes through.
+    pub clear: bool,
+    /// Whether there is a mirror image.
+    pub mirror: bool,
+}
+
+impl<R: Real> Material<R> {
+    /// Prepares a material.
+    pub fn new(material: &scene::Material) -> Self {
+        let diffuse = V3::<R>::exact(material.diffuse);
+        let largest = material.diffuse.max_element();
+        let one = R::exact(1.0);
+        let tint = if largest > 0.0 {
+            let by = R::exact(largest);
+            V3::new(diffuse.x / by, diffuse.y / by, diffuse.z / by)
+        } else {
+            V3::new(one, one, one)
+        };
+        Self {
+            ambient: V3::exact(material.ambient),
+            diffuse,
+            specular: V3::exact(material.specular),
+            shininess: material.shininess,
+            transparency: R::exact(material.transparency),
+            tint,
+            clear: material.transparency != 0.0,
+            mirror: material.specular.max_element() > 0.0,
+        }
+    }
+}
+
+/// A light.
+#[derive(Debug, Clone, Copy)]
+pub struct Light<R> {
+    /// From the viewpoint, in units of 2^scale.
+    pub location: V3<R>,
+    /// How bright it is.
+    pub emissivity: V3<R>,
+    /// A spotlight's axis, of unit length, and the cosine of its half angle.
+    pub cone: Option<(V3<R>, R)>,
+}
+
+impl<R: Real> Light<R> {
+    /// Prepares a light.
+    pub fn new(viewpoint: V3<R>, scale: i32, light: &scene::Light) -> Self {
+        let unit = R::exact(two_to(-scale));
+        let location = V3::exact(light.location);
+        let cone = light.cone.map(|cone| {
+            let axis = (V3::exact(cone.point) - location) * unit;
+            (axis.unit(), R::cos_degrees(cone.theta))
+        });
+        Self { location: (location - viewpoint) * unit, emissivity: V3::exact(light.emissivity), cone }
+    }
+}
