@@ -15,6 +15,7 @@
 //! [`render::render`] runs the whole of it; `src/cli/` only turns arguments into such calls.
 
 pub mod diagnostic;
+pub mod vector;
 pub mod scene;
 pub mod jitter;
 pub mod prepare;

@@ -15,6 +15,7 @@ pub struct Ray<R> {
 }
 
 /// The ray through pixel (x, y).
+#[inline]
 pub fn camera_getdir<R: Real>(camera: &Camera<R>, x: f64, y: f64) -> Ray<R> {
     let axis = |i: usize, at: f64| {
         // Exact: a pixel, with the jitter's ten bits, and a whole number.
@@ -25,11 +26,13 @@ pub fn camera_getdir<R: Real>(camera: &Camera<R>, x: f64, y: f64) -> Ray<R> {
 }
 
 /// The factor from a reflectivity to a pixel value: 1/t, the inverse of the distance s·|W| in world units.
+#[inline]
 pub fn inverse_distance<R: Real>(camera: &Camera<R>, ray: &Ray<R>, inverse: R) -> R {
     inverse / ray.w2.sqrt() * R::exact(two_to(-camera.scale))
 }
 
 /// The bytes of a pixel: floor(min(255, max(0, 255·v))).
+#[inline]
 pub fn camera_setpix<R: Real>(value: V3<R>) -> Result<[u8; 3], Undecided> {
     let byte = |v: R| -> Result<u8, Undecided> {
         let scaled = v * R::exact(255.0);

@@ -1,15 +1,17 @@
 //! A pixel from its samples: the notes' `make_pixel`, and whole bands of pixels on all cores.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use super::camera::camera_setpix;
 use super::trace::{Fault, Limits, Unwatched, ray_trace};
 use crate::jitter::{self, Course};
-use crate::prepare::Prepared;
-use crate::real::{Real, V3};
+use crate::prepare::{Prepared, View};
+use crate::real::{Bounded, DoubleDouble, Real, V3};
 use crate::render::{Band, PixelFault};
+use crate::scene::Scene;
 
 /// Which rays a pixel is made of.
 #[derive(Debug, Clone, Copy)]
@@ -82,25 +84,59 @@ impl Jitter {
     }
 }
 
-/// Value and bytes of a pixel in f64, which decides every comparison. (NaN apart: no scene within its limits makes one but
-/// by overflow, and such a pixel stays black.)
-pub fn trace_pixel(
-    scene: &Prepared<f64>,
+/// The scene on the CPU, in as many number types as it takes: f64 with error bounds decides nearly every pixel; where it
+/// cannot, pairs of f64 do.
+#[derive(Debug)]
+pub struct Stages<'a> {
+    scene: &'a Scene,
+    view: View,
+    bounded: Prepared<Bounded>,
+    pairs: OnceLock<Prepared<DoubleDouble>>,
+}
+
+/// Value and bytes of a pixel.
+pub type Pixel = ([f32; 3], [u8; 3]);
+
+impl<'a> Stages<'a> {
+    /// Prepares the scene.
+    pub fn new(scene: &'a Scene, view: View) -> Self {
+        Self { scene, view, bounded: Prepared::new(scene, view), pairs: OnceLock::new() }
+    }
+
+    /// Value and bytes of pixel (x, y).
+    pub fn trace(&self, limits: &Limits, sampling: Sampling<'_>, x: u32, y: u32) -> Result<Pixel, PixelFault> {
+        let pixel = attempt(&self.bounded, limits, sampling, x, y).or_else(|fault| match fault {
+            Fault::TooManyRays => Err(fault),
+            Fault::Undecided => {
+                let pairs = self.pairs.get_or_init(|| Prepared::new(self.scene, self.view));
+                attempt(pairs, limits, sampling, x, y)
+            }
+        });
+        match pixel {
+            Ok(pixel) => Ok(pixel),
+            // Only where numbers overflow: such a pixel stays black.
+            Err(Fault::Undecided) => Ok(([0.0; 3], [0; 3])),
+            Err(Fault::TooManyRays) => Err(PixelFault { x, y, max_rays: limits.max_rays }),
+        }
+    }
+}
+
+fn attempt<R: Real>(
+    scene: &Prepared<R>,
     limits: &Limits,
     sampling: Sampling<'_>,
     x: u32,
     y: u32,
-) -> Result<([f32; 3], [u8; 3]), PixelFault> {
-    match make_pixel(scene, limits, sampling, x, y) {
-        Ok(v) => Ok(([v.x as f32, v.y as f32, v.z as f32], camera_setpix(v).unwrap_or_default())),
-        Err(Fault::Undecided) => Ok(([0.0; 3], [0; 3])),
-        Err(Fault::TooManyRays) => Err(PixelFault { x, y, max_rays: limits.max_rays }),
-    }
+) -> Result<Pixel, Fault> {
+    let v = make_pixel(scene, limits, sampling, x, y)?;
+    let bytes = camera_setpix(v)?;
+    let v = v.approx();
+    Ok(([v.x as f32, v.y as f32, v.z as f32], bytes))
 }
 
 /// Traces a band on the CPU, pixels in parallel on the current thread pool.
 pub fn make_band(
-    scene: &Prepared<f64>,
+    scene: &Stages<'_>,
     limits: &Limits,
     jitter: &Jitter,
     width: u32,
@@ -124,7 +160,7 @@ pub fn make_band(
             for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
                 let x = k * piece + i;
                 let sampling = jitter.pixel(offsets.as_deref(), width, x);
-                let (value, three) = trace_pixel(scene, limits, sampling, x as u32, y)?;
+                let (value, three) = scene.trace(limits, sampling, x as u32, y)?;
                 pixel.copy_from_slice(&three);
                 if let Some(values) = &mut values {
                     values[i] = value;

@@ -8,6 +8,7 @@ use crate::prepare::world::WorldPlane;
 use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the hit on the plane, or None for a miss.
+#[inline]
 pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
     if let Some(front) = &plane.front {
         let [x, y] = ray.pixel;

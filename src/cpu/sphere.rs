@@ -6,6 +6,7 @@ use crate::prepare::{Camera, Sphere};
 use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the nearer hit on the sphere, or None for a miss; a tangent ray misses.
+#[inline]
 pub fn sphere_hits<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
     let along = sphere.toward.dot(ray.w);
     let disc = sphere_disc(camera, sphere, ray, along);
@@ -16,6 +17,7 @@ pub fn sphere_hits<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>
 }
 
 /// (r² − |perpendicular|²)·W·W / |C|²: > 0 where the ray's line meets the sphere.
+#[inline]
 fn sphere_disc<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, along: R) -> R {
     match sphere_offset(camera, sphere, ray) {
         Some([u, v]) => {
@@ -28,6 +30,7 @@ fn sphere_disc<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, al
 }
 
 /// W − W_c on the screen: how far the ray passes from the projected center, if that is on the screen's side.
+#[inline]
 fn sphere_offset<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Option<[R; 2]> {
     let seen = sphere.seen.as_ref()?;
     let axis =

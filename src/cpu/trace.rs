@@ -107,6 +107,7 @@ pub struct Unwatched;
 impl<R> Watch<R> for Unwatched {}
 
 /// The closest object that a primary ray hits; of equally near ones the first in the file.
+#[inline]
 pub fn find_closest_object<R: Real>(scene: &Prepared<R>, ray: &Ray<R>) -> Result<Option<Hit<R>>, Undecided> {
     let mut closest: Option<Hit<R>> = None;
     for (index, plane) in scene.planes.iter().enumerate() {
@@ -133,6 +134,7 @@ pub fn find_closest_object<R: Real>(scene: &Prepared<R>, ray: &Ray<R>) -> Result
 }
 
 /// Takes `hit` if it is nearer than `closest`, or as near and first in the file.
+#[inline]
 fn nearer<R: Real>(closest: &mut Option<Hit<R>>, hit: Hit<R>) -> Result<(), Undecided> {
     let takes = match closest {
         None => true,

@@ -4,10 +4,12 @@
 //! [`Undecided`], never a guess. f64 decides always, and is wrong where its rounding crosses the border.
 
 mod bounded;
+mod double_double;
 mod float;
 mod vec3;
 
 pub use bounded::Bounded;
+pub use double_double::DoubleDouble;
 pub use vec3::V3;
 
 use std::cmp::Ordering;

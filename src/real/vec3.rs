@@ -17,25 +17,25 @@ pub struct V3<R> {
 
 impl<R: Real> V3<R> {
     /// The vector of three numbers.
-    #[inline]
+    #[inline(always)]
     pub fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }
     }
 
     /// The vector that glam's is, exactly.
-    #[inline]
+    #[inline(always)]
     pub fn exact(v: glam::DVec3) -> Self {
         Self::new(R::exact(v.x), R::exact(v.y), R::exact(v.z))
     }
 
     /// The inner product.
-    #[inline]
+    #[inline(always)]
     pub fn dot(self, other: Self) -> R {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     /// The outer product.
-    #[inline]
+    #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self::new(
             self.y * other.z - self.z * other.y,
@@ -45,26 +45,26 @@ impl<R: Real> V3<R> {
     }
 
     /// The vector of unit length in the same direction; the vector is not zero.
-    #[inline]
+    #[inline(always)]
     pub fn unit(self) -> Self {
         let length = self.dot(self).sqrt();
         Self::new(self.x / length, self.y / length, self.z / length)
     }
 
     /// The product by components: a colour through a filter.
-    #[inline]
+    #[inline(always)]
     pub fn each(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
 
     /// The component along an axis.
-    #[inline]
+    #[inline(always)]
     pub fn axis(self, axis: usize) -> R {
         [self.x, self.y, self.z][axis]
     }
 
     /// The vector with one component replaced.
-    #[inline]
+    #[inline(always)]
     pub fn with_axis(mut self, axis: usize, value: R) -> Self {
         *[&mut self.x, &mut self.y, &mut self.z][axis] = value;
         self
@@ -78,7 +78,7 @@ impl<R: Real> V3<R> {
 
 impl<R: Real> Add for V3<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
     }
@@ -86,7 +86,7 @@ impl<R: Real> Add for V3<R> {
 
 impl<R: Real> Sub for V3<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
     }
@@ -94,7 +94,7 @@ impl<R: Real> Sub for V3<R> {
 
 impl<R: Real> Mul<R> for V3<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, k: R) -> Self {
         Self::new(self.x * k, self.y * k, self.z * k)
     }
@@ -102,7 +102,7 @@ impl<R: Real> Mul<R> for V3<R> {
 
 impl<R: Real> Neg for V3<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self::new(-self.x, -self.y, -self.z)
     }

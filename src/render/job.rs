@@ -1,21 +1,24 @@
 //! A rendering under way, on one of the two tracers.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use super::{Backend, Emit, Error, Report, Seconds, Settings};
-use crate::cpu::pixel::{Jitter, make_band, trace_pixel};
+use crate::cpu::pixel::{Jitter, Stages, make_band};
 use crate::cpu::trace::Limits;
 use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;
 use crate::gpu::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands, compose};
-use crate::prepare::Prepared;
+use crate::prepare::{Prepared, View};
+use crate::scene::Scene;
 
 /// Everything that a tracer needs to know.
 pub(super) struct Job<'a> {
-    pub(super) prepared: Prepared<f64>,
+    pub(super) scene: &'a Scene,
+    pub(super) view: View,
     pub(super) jitter: Jitter,
     pub(super) limits: Limits,
     pub(super) width: u32,
@@ -27,7 +30,7 @@ impl Job<'_> {
     /// Renders on the GPU; pixels that it leaves undecided are traced on the CPU.
     pub(super) fn on_gpu(&self, gpu: &Gpu, emit: &mut Emit<'_>, report: &mut Report) -> Result<(), Error> {
         let start = Instant::now();
-        let packed = Packed::new(&self.prepared);
+        let packed = Packed::new(&Prepared::new(self.scene, self.view));
         let (found, allowed) = (packed.loop_iterations(), compose::LOOP_ITERATIONS);
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
@@ -36,10 +39,11 @@ impl Job<'_> {
         let wgsl = compose::compose(&packed, &features);
         let packing = start.elapsed().as_secs_f64();
         let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl)?;
+        let stages = OnceLock::new();
         let refine = |x: u32, y: u32| {
             let row = self.jitter.row(y);
             let sampling = self.jitter.pixel(row.as_deref(), self.width as usize, x as usize);
-            trace_pixel(&self.prepared, &self.limits, sampling, x, y)
+            stages.get_or_init(|| Stages::new(self.scene, self.view)).trace(&self.limits, sampling, x, y)
         };
         let frame = bands::Frame {
             width: self.width,
@@ -74,6 +78,7 @@ impl Job<'_> {
             .num_threads(self.settings.threads.unwrap_or(0))
             .build()
             .map_err(|error| Error::Threads(error.to_string()))?;
+        let stages = pool.install(|| Stages::new(self.scene, self.view));
         report.threads = Some(pool.current_num_threads());
         let mut height = 16.min(self.rows.end - self.rows.start);
         let mut end = self.rows.end;
@@ -82,7 +87,7 @@ impl Job<'_> {
             let band = end - height..end;
             let values = self.settings.values;
             let band = pool.install(|| {
-                make_band(&self.prepared, &self.limits, &self.jitter, self.width, band, values)
+                make_band(&stages, &self.limits, &self.jitter, self.width, band, values)
             })?;
             let seconds = kernel.elapsed().as_secs_f64();
             report.seconds.kernel += seconds;

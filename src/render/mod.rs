@@ -15,7 +15,7 @@ use crate::cpu::trace::Limits;
 use crate::gpu::bands::BandError;
 use crate::gpu::{self, GpuError};
 use crate::jitter::Course;
-use crate::prepare::{Prepared, View};
+use crate::prepare::View;
 use crate::scene::Scene;
 use job::Job;
 
@@ -248,7 +248,8 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
         },
     };
     let job = Job {
-        prepared: Prepared::new(scene, View::new(settings.screen_tolerance, settings.samples)),
+        scene,
+        view: View::new(settings.screen_tolerance, settings.samples),
         jitter: match (settings.samples, settings.jitter) {
             (0 | 1, _) => Jitter::Once,
             (samples, Spread::Hash) => Jitter::Hash(samples),

@@ -1,0 +1,86 @@
+#!/bin/sh
+# Runs all tests: sh scripts/test.sh [what `cargo test` takes, such as --test vectors_gpu]
+#
+# Many tests run on a GPU, and fail without one; a software Vulkan driver will do. Where there is none, and this script
+# may (as root on Debian or Ubuntu), it installs one; elsewhere it says what to install.
+set -eu
+cd "$(dirname "$0")/.."
+
+packages="mesa-vulkan-drivers libvulkan1"
+
+say() { printf 'test.sh: %s\n' "$*"; }
+stop() {
+    printf 'test.sh: %s\n' "$*" >&2
+    exit 1
+}
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+trap 'exit 129' HUP
+trap 'exit 130' INT
+trap 'exit 143' TERM
+
+# Mesa complains where it is not set.
+if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+    XDG_RUNTIME_DIR=$scratch/runtime
+    mkdir -m 700 "$XDG_RUNTIME_DIR"
+    export XDG_RUNTIME_DIR
+fi
+
+# Whether there is a file where the Vulkan loader looks for drivers, and the loader itself.
+vulkan_seems_installed() {
+    (PATH=$PATH:/usr/sbin:/sbin && ldconfig -p 2>/dev/null) | grep -q 'libvulkan\.so\.1' || return 1
+    [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
+    for file in /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json; do
+        [ ! -e "$file" ] || return 0
+    done
+    return 1
+}
+
+may_install() { [ "$(uname)" = Linux ] && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; }
+
+installed=no
+install() {
+    installed=yes
+    say "no Vulkan driver found: apt-get installs $packages"
+    # A package list that cannot be fetched need not matter: the installation tells.
+    # shellcheck disable=SC2086
+    { apt-get update || :; DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $packages; } \
+        </dev/null >"$scratch/apt-get" 2>&1 || {
+        cat "$scratch/apt-get" >&2
+        stop "apt-get could not install $packages"
+    }
+}
+
+command -v cargo >/dev/null || stop "there is no cargo: install Rust, see https://rustup.rs"
+if may_install && ! vulkan_seems_installed; then
+    install
+fi
+
+# Several minutes the first time: someone who looks on sees what is compiled.
+say "building"
+if [ -t 2 ]; then quiet=; else quiet=--quiet; fi
+cargo test --release --locked --no-run $quiet
+
+# What plumb itself finds is what counts.
+target=$(cargo metadata --locked --no-deps --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')
+look() {
+    # It says by its exit code, too, that there is none.
+    "$target/release/plumb" doctor >"$scratch/doctor" 2>&1 || :
+    found=$(sed -n 's/^plumb renders on \(.*\): .*/\1/p' "$scratch/doctor")
+    if [ -z "$found" ]; then
+        cat "$scratch/doctor" >&2
+        stop "\`plumb doctor\` does not say what there is"
+    fi
+}
+look
+if [ "$found" = "the CPU" ] && [ "$installed" = no ] && may_install; then
+    install
+    look
+fi
+if [ "$found" = "the CPU" ]; then
+    stop "there is no GPU adapter: install your GPU's Vulkan driver, or the software one (Debian, Ubuntu: apt-get install $packages; Fedora: dnf install mesa-vulkan-drivers vulkan-loader; Arch: pacman -S vulkan-swrast)"
+fi
+
+say "testing on $found"
+cargo test --release --locked --no-fail-fast --quiet "$@"
