@@ -61,6 +61,7 @@ fn procedural_table(root: &Path) -> String {
         writeln!(
             source,
             "];\n/// The colour that {family} shader `shader` gives; the parser has checked the number.\n\
+             #[allow(clippy::match_single_binding, reason = \"a family may have one shader\")]\n\
              pub fn {family}<R: Real>(shader: u32, at: &{point}<R>) -> Result<V3<R>, Undecided> {{\n    match shader {{"
         )
         .expect("a string grows");

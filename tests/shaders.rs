@@ -3,14 +3,18 @@
 
 mod common;
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use plumb::cpu::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::gpu::compose::compose;
 use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
-use plumb::prepare::Prepared;
-use plumb::scene::{Camera, Material, Object, Scene, Shape, Surface};
+use plumb::prepare::{Prepared, View};
+use plumb::render::{Settings, Spread};
+use plumb::scene::{Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture, TextureMode};
 
 /// Something that a scene may have and a shader then needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +30,17 @@ enum Ingredient {
     ManyPlanes,
     ManySpheres,
     Values,
+    Rectangle,
+    TiledAlong,
+    Texplane(TextureMode),
+    Lamp,
+    Spotlight,
+    LampInFloor,
+    Mirror,
+    Glass,
+    Glint,
+    Samples,
+    CourseSamples,
 }
 
 use Ingredient::*;
@@ -40,6 +55,18 @@ fn ingredients() -> Vec<Ingredient> {
         ManyPlanes,
         ManySpheres,
         Values,
+        Rectangle,
+        TiledAlong,
+        Texplane(TextureMode::Fit),
+        Texplane(TextureMode::Tile),
+        Lamp,
+        Spotlight,
+        LampInFloor,
+        Mirror,
+        Glass,
+        Glint,
+        Samples,
+        CourseSamples,
     ];
     all.extend((0..PPLANE_SHADERS).map(Pplane));
     all.extend((0..PSPHERE_SHADERS).flat_map(|n| [SmallPsphere(n), WidePsphere(n)]));
@@ -74,12 +101,58 @@ fn objects(ingredient: Ingredient) -> Vec<Object> {
         ManySpheres => (0..1000)
             .map(|i| sphere(DVec3::new(f64::from(i % 8), f64::from(i / 8 % 6), -9.0 - f64::from(i)), 0.3, Surface::Plain))
             .collect(),
-        Values => vec![],
+        Rectangle => vec![rectangle(Surface::Plain)],
+        TiledAlong => {
+            vec![floor(Surface::Tiled { dimension: DVec2::ONE, altmaterial: 0, xdir: Some(DVec3::new(1.0, 0.0, 1.0)) })]
+        }
+        Texplane(mode) => vec![rectangle(Surface::Textured { texture: 0, mode })],
+        Mirror => vec![of_material(1, floor(Surface::Plain))],
+        Glass => vec![of_material(2, small(Surface::Plain))],
+        Glint => vec![of_material(3, small(Surface::Plain))],
+        LampInFloor => vec![floor(Surface::Plain)],
+        Values | Lamp | Spotlight | Samples | CourseSamples => vec![],
     }
 }
 
+fn of_material(material: usize, object: Object) -> Object {
+    Object { material, ..object }
+}
+
+fn rectangle(surface: Surface) -> Object {
+    let extent = Some(Extent { xdir: DVec3::X, dimensions: DVec2::new(2.0, 3.0) });
+    let shape = Shape::Plane { normal: DVec3::Z, point: DVec3::new(1.0, 1.0, -4.0), extent };
+    Object { name: "r".into(), material: 0, shape, surface }
+}
+
+fn lights(ingredient: Ingredient) -> Vec<Light> {
+    let light = |y, cone| Light {
+        name: "l".into(),
+        location: DVec3::new(4.0, y, 2.0),
+        emissivity: DVec3::ONE,
+        cone,
+    };
+    match ingredient {
+        // What materials do is seen by light alone.
+        Lamp | Mirror | Glass | Glint => vec![light(6.0, None)],
+        LampInFloor => vec![light(-1.0, None)],
+        Spotlight => vec![light(6.0, Some(Cone { point: DVec3::ZERO, theta: 20.0 }))],
+        _ => vec![],
+    }
+}
+
+fn materials() -> Vec<Material> {
+    let material = || Material { name: "m".into(), ambient: DVec3::ONE, diffuse: DVec3::ONE, ..Material::default() };
+    let specular = DVec3::splat(0.5);
+    vec![
+        material(),
+        Material { specular, ..material() },
+        Material { transparency: 0.5, ..material() },
+        Material { specular, shininess: 20.0, ..material() },
+    ]
+}
+
 fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
-    let material = Material { name: "m".into(), ambient: DVec3::ONE, ..Material::default() };
+    let texels = Texels { width: 2, height: 1, rgb: vec![0; 6] };
     let scene = Scene {
         camera: Camera {
             name: "c".into(),
@@ -87,13 +160,25 @@ fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
             worlddim: DVec2::new(8.0, 6.0),
             viewpoint: DVec3::new(4.0, 3.0, 6.0),
         },
-        materials: vec![material],
+        materials: materials(),
         objects: chosen.iter().flat_map(|i| objects(*i)).collect(),
-        lights: vec![],
-        textures: vec![],
+        lights: chosen.iter().flat_map(|i| lights(*i)).collect(),
+        textures: vec![Texture {
+            name: "t".into(),
+            filename: "t.ppm".into(),
+            path: "t.ppm".into(),
+            texels: Arc::new(texels),
+        }],
     };
-    let packed = Packed::new(&Prepared::new(&scene, 0.0));
-    let features = FeatureSet::new(&packed, chosen.contains(&Values));
+    let has = |ingredient| chosen.contains(&ingredient);
+    let settings = Settings {
+        values: has(Values),
+        samples: if has(Samples) || has(CourseSamples) { 16 } else { 1 },
+        jitter: if has(CourseSamples) { Spread::Course } else { Spread::Hash },
+        ..Settings::default()
+    };
+    let packed = Packed::new(&Prepared::new(&scene, View::new(0.0, settings.samples)));
+    let features = FeatureSet::new(&packed, &settings);
     (compose(&packed, &features), features)
 }
 
@@ -120,18 +205,36 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     }
     let (wgsl, features) = composed(&all);
     assert_valid(&wgsl, "all");
-    let without_many: Vec<_> = all.into_iter().filter(|i| !matches!(i, ManyPlanes | ManySpheres)).collect();
-    assert_valid(&composed(&without_many).0, "all, unrolled");
-    // Together they have every feature that there is, so that none is left out above.
-    assert!(features.planes && features.front && features.small_spheres && features.wide_spheres && features.bvh);
+    // A scene that has everything but many objects has them as literals, and one without lights has other shapes.
+    let few = |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres);
+    let dark = |i: &Ingredient| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint);
+    let without_many: Vec<_> = all.iter().copied().filter(few).collect();
+    let (wgsl, few_features) = composed(&without_many);
+    assert_valid(&wgsl, "all, unrolled");
+    let without_light: Vec<_> = all.iter().copied().filter(dark).collect();
+    let (wgsl, dark_features) = composed(&without_light);
+    assert_valid(&wgsl, "all without lights");
+    let both: Vec<_> = without_many.iter().copied().filter(dark).collect();
+    let (wgsl, plain_features) = composed(&both);
+    assert_valid(&wgsl, "all without lights, unrolled");
+    let spread: Vec<_> = without_many.iter().copied().filter(|i| *i != CourseSamples).collect();
+    let (wgsl, spread_features) = composed(&spread);
+    assert_valid(&wgsl, "all, unrolled, spread by the hash");
+    let every = [few_features, dark_features, plain_features, spread_features, features];
+    // Together they have every name that the files ask for, so that none is left out above.
+    let named: BTreeSet<&str> = every.iter().flat_map(FeatureSet::names).collect();
+    for name in ["front", "stack", "any_hit", "world_loop", "world_bvh", "course", "small_sphere_point", "level"] {
+        assert!(named.contains(name) || name == "any_hit", "{name}");
+    }
 }
 
 #[test]
 fn every_scene_of_ours_is_valid() {
     for path in common::good_scenes() {
-        let packed = Packed::new(&Prepared::new(&common::read(&path), 0.0));
-        for values in [false, true] {
-            let features = FeatureSet::new(&packed, values);
+        for (values, samples) in [(false, 1), (true, 16)] {
+            let settings = Settings { values, samples, ..Settings::default() };
+            let packed = Packed::new(&Prepared::new(&common::read(&path), View::new(0.0, samples)));
+            let features = FeatureSet::new(&packed, &settings);
             assert_valid(&compose(&packed, &features), &path.display().to_string());
         }
     }
@@ -140,22 +243,34 @@ fn every_scene_of_ours_is_valid() {
 #[test]
 fn what_is_not_used_is_not_there() {
     // (a word of the feature, who may have it)
+    let lit = |i| matches!(i, Mirror | Glass | Glint | LampInFloor);
     let words: &[(&str, &dyn Fn(Ingredient) -> bool)] = &[
-        ("plane_hits", &|i| {
-            matches!(i, Plane | PlaneAcrossTheScreen | Tiled | Pplane(_) | ManyPlanes)
+        ("plane_hits(", &|i| {
+            matches!(i, Plane | PlaneAcrossTheScreen | Tiled | TiledAlong | Pplane(_) | ManyPlanes | Mirror | LampInFloor)
         }),
+        ("rectangle_hits", &|i| matches!(i, Rectangle | Texplane(_))),
         ("plane.front.x *", &|i| i == PlaneAcrossTheScreen),
-        ("small_sphere_hits", &|i| matches!(i, SmallSphere | SmallPsphere(_) | ManySpheres)),
+        ("small_sphere_hits", &|i| matches!(i, SmallSphere | SmallPsphere(_) | ManySpheres | Glass | Glint)),
         ("wide_sphere_hits", &|i| matches!(i, WideSphere | WidePsphere(_))),
         ("bvh", &|i| i == ManySpheres),
-        ("Tiled", &|i| i == Tiled),
+        ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
         ("Pplane", &|i| matches!(i, Pplane(_))),
+        ("Texplane", &|i| matches!(i, Texplane(_))),
         ("pplane_0_tiles", &|i| i == Pplane(0)),
         ("pplane_1_angle", &|i| matches!(i, Pplane(1 | 2))),
         ("psphere_0_angle", &|i| matches!(i, SmallPsphere(0) | WidePsphere(0))),
         ("color_wheel", &|i| matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))),
         ("vec4u", &|i| i == Values),
-        ("switch", &|i| matches!(i, Tiled | Pplane(_) | SmallPsphere(_) | WidePsphere(_))),
+        ("switch", &|i| matches!(i, Tiled | TiledAlong | Pplane(_) | Texplane(_) | SmallPsphere(_) | WidePsphere(_))),
+        ("light_term", &lit),
+        ("fn shadow", &lit),
+        ("diffuse", &lit),
+        ("array<Branch", &|_| false),
+        ("mirrored", &|i| matches!(i, Mirror | Glint)),
+        ("through.weight", &|i| i == Glass),
+        ("pow(", &|i| i == Glint),
+        ("jitter_hash", &|_| false),
+        ("offsets[", &|_| false),
     ];
     for ingredient in ingredients() {
         let (wgsl, _) = composed(&[ingredient]);
@@ -164,6 +279,15 @@ fn what_is_not_used_is_not_there() {
         }
     }
     assert!(!composed(&[]).0.contains("Ray"));
+    // Without anything to hit there is nothing to light or to sample.
+    assert!(!composed(&[Lamp, Samples]).0.contains("light_term"));
+    // A stack only where rays fork.
+    assert!(composed(&[Mirror, Glass]).0.contains("array<Branch"));
+    assert!(composed(&[Plane, Samples]).0.contains("jitter_hash"));
+    let course = composed(&[Plane, CourseSamples]).0;
+    assert!(course.contains("offsets[") && !course.contains("jitter_hash"));
+    assert!(!composed(&[Plane, Lamp]).0.contains("light.axis)"));
+    assert!(composed(&[Plane, Spotlight]).0.contains("light.axis)"));
 }
 
 #[test]
@@ -210,28 +334,43 @@ mod layout {
 
     #[test]
     fn records_are_laid_out_as_naga_says() {
-        let module = assert_valid(&composed(&ingredients()).0, "all");
+        let all = ingredients();
+        let module = assert_valid(&composed(&all).0, "all");
+        let dark: Vec<_> =
+            all.into_iter().filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint)).collect();
+        let dark = assert_valid(&composed(&dark).0, "all without lights");
         same_layout!(module, "Job", pack::Job, first, size);
-        same_layout!(module, "Object", pack::Object, ambient, kind);
-        same_layout!(module, "Plane", pack::Plane, inverse, object, front, unused);
+        same_layout!(dark, "Object", pack::Object, ambient, kind);
+        same_layout!(module, "Object", pack::LitObject, material, kind, group, place);
+        same_layout!(dark, "Plane", pack::Plane, inverse, object, front, unused);
         same_layout!(
-            module, "SmallSphere", pack::SmallSphere, toward, rho2, gain, distance, offset, anchor, object, unused
+            dark, "Rectangle", pack::Rectangle, inverse, object, front, unused, side_0, length_0, side_1, length_1
         );
-        same_layout!(module, "WideSphere", pack::WideSphere, toward, kappa2, gain, distance, object, unused);
+        same_layout!(
+            dark, "SmallSphere", pack::SmallSphere, toward, rho2, gain, distance, offset, anchor, object, unused
+        );
+        same_layout!(dark, "WideSphere", pack::WideSphere, toward, kappa2, gain, distance, object, unused);
         same_layout!(module, "BvhNode", pack::BvhNode, min, first, max, count);
-        same_layout!(module, "Tiled", pack::TiledPlane, per_unit, fraction, altmaterial, parity);
         same_layout!(
-            module,
-            "Pplane",
-            pack::ProceduralPlane,
-            per_unit,
-            unused_0,
-            fraction,
-            unused_1,
-            parity,
-            unused_2,
-            from_point
+            module, "Tiled", pack::TiledPlane, row_0, fraction_0, row_1, fraction_1, altmaterial, altindex, parity,
+            unused
         );
+        same_layout!(
+            module, "Pplane", pack::ProceduralPlane, per_unit, unused_0, fraction, unused_1, parity, unused_2, from_point
+        );
+        same_layout!(
+            module, "Texplane", pack::Texplane, row_0, origin_0, row_1, origin_1, size, first, repeats
+        );
+        same_layout!(
+            module, "Material", pack::Material, ambient, transparency, diffuse, shininess, specular, unused_0, tint,
+            unused_1
+        );
+        same_layout!(module, "Light", pack::Light, location, cosine, emissivity, unused_0, axis, unused_1);
+        same_layout!(
+            module, "WorldPlane", pack::WorldPlane, normal, offset, keep, group, own, object, row_0, origin_0, row_1,
+            origin_1, lengths, level, bounded
+        );
+        same_layout!(module, "WorldSphere", pack::WorldSphere, center, radius, group, object, level, seen);
     }
 
     #[test]

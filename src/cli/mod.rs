@@ -7,6 +7,7 @@ mod args;
 mod check;
 mod compare;
 mod completions;
+mod digits;
 mod doctor;
 mod dump;
 mod picture;
@@ -15,6 +16,7 @@ mod progress;
 mod render;
 mod say;
 mod source;
+mod tree;
 mod why;
 
 use std::env;

@@ -1,13 +1,16 @@
 //! What one object answers to the ray of one pixel, and why, in exact arithmetic: the explanations of `plumb probe`.
 //!
 //! Beside the tracers, not part of them: it starts from the scene as the file has it and follows docs/SCENE.md with
-//! rational numbers, so that it can tell a miss by a hair from a tangent, and a tie that f64 decides wrongly.
+//! rational numbers, so that it can tell a miss by a hair from a tangent, and a tie that f64 decides wrongly. A
+//! rectangle's unit vectors are not rational; but which side of an edge a point is on, their squares tell.
 
 use std::fmt;
 
 use plumb::prepare::camera::{origin, step};
 use plumb::prepare::exact::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
-use plumb::scene::{Camera, Scene, Shape};
+use plumb::scene::{Camera, Extent, Scene, Shape};
+
+use super::digits;
 
 /// The ray of a pixel, as rational numbers: viewpoint + s·W goes through the pixel's world point at s = 1.
 pub(crate) struct ExactRay {
@@ -35,6 +38,15 @@ pub(crate) enum Reason {
     Behind,
     /// The plane is met at this z, above the screen tolerance.
     BeforeScreen(f64),
+    /// The plane of a rectangle is met beside it.
+    Outside {
+        /// Along xdir (0), or along normal × xdir (1).
+        side: usize,
+        /// Where.
+        at: f64,
+        /// How long the side is.
+        length: f64,
+    },
     /// The discriminant is negative.
     Passes,
     /// The discriminant is 0.
@@ -52,6 +64,14 @@ impl fmt::Display for Reason {
             Self::ThroughViewpoint => f.write_str("the viewpoint lies on it"),
             Self::Behind => f.write_str("it is behind the viewpoint"),
             Self::BeforeScreen(z) => write!(f, "it is met in front of the screen, at z = {z}"),
+            Self::Outside { side, at, length } => {
+                let along = ["xdir", "normal × xdir"][*side];
+                write!(
+                    f,
+                    "its plane is met outside the rectangle: at {} along {along}, where it reaches from 0 to {length}",
+                    digits::short(*at)
+                )
+            }
             Self::Passes => f.write_str("the ray passes by"),
             Self::Tangent => f.write_str("the ray touches it, which is a miss"),
             Self::Inside => f.write_str("the viewpoint is inside it"),
@@ -60,11 +80,11 @@ impl fmt::Display for Reason {
 }
 
 impl ExactRay {
-    /// The ray of pixel (x, y), counted from the bottom left.
-    pub(crate) fn new(camera: &Camera, x: u32, y: u32) -> Self {
-        let at = |i: usize, pixel: u32| {
+    /// The ray through pixel (x, y), counted from the bottom left, with fractions between pixels.
+    pub(crate) fn new(camera: &Camera, x: f64, y: f64) -> Self {
+        let at = |i: usize, pixel: f64| {
             let (pixels, world) = (camera.pixeldim[i], camera.worlddim[i]);
-            origin(pixels, world) + ratio(f64::from(pixel)) * step(pixels, world)
+            origin(pixels, world) + ratio(pixel) * step(pixels, world)
         };
         let viewpoint = ratio3(camera.viewpoint);
         let w = sub(&[at(0, x), at(1, y), Ratio::ZERO], &viewpoint);
@@ -79,14 +99,25 @@ impl ExactRay {
     /// What the object of this number answers, under the screen tolerance τ.
     pub(crate) fn ask(&self, scene: &Scene, object: usize, screen_tolerance: f64) -> Verdict {
         match scene.objects[object].shape {
-            Shape::Plane { normal, point, .. } => {
-                self.plane(&ratio3(normal), &ratio3(point), screen_tolerance)
+            Shape::Plane {
+                normal,
+                point,
+                extent,
+            } => {
+                let (normal, point) = (ratio3(normal), ratio3(point));
+                self.plane(&normal, &point, extent.as_ref(), screen_tolerance)
             }
             Shape::Sphere { center, radius } => self.sphere(&ratio3(center), &ratio(radius)),
         }
     }
 
-    fn plane(&self, normal: &[Ratio; 3], point: &[Ratio; 3], screen_tolerance: f64) -> Verdict {
+    fn plane(
+        &self,
+        normal: &[Ratio; 3],
+        point: &[Ratio; 3],
+        extent: Option<&Extent>,
+        screen_tolerance: f64,
+    ) -> Verdict {
         let along = dot(normal, &self.w);
         let ahead = dot(normal, &sub(point, &self.viewpoint));
         if is_zero(&along) {
@@ -99,11 +130,12 @@ impl ExactRay {
         if !is_positive(&s) {
             return Verdict::Miss(Reason::Behind);
         }
-        let z = &self.viewpoint[2] + &self.w[2] * s;
-        if z > ratio(screen_tolerance) {
-            return Verdict::Miss(Reason::BeforeScreen(z.to_f64().value()));
+        let hit = [0, 1, 2].map(|i| &self.viewpoint[i] + &self.w[i] * &s);
+        if hit[2] > ratio(screen_tolerance) {
+            return Verdict::Miss(Reason::BeforeScreen(hit[2].to_f64().value()));
         }
-        Verdict::Hit
+        let outside = extent.and_then(|extent| outside(extent, normal, &sub(&hit, point)));
+        outside.map_or(Verdict::Hit, Verdict::Miss)
     }
 
     fn sphere(&self, center: &[Ratio; 3], radius: &Ratio) -> Verdict {
@@ -128,6 +160,26 @@ impl ExactRay {
     }
 }
 
+/// Over which side of a rectangle a point of its plane lies, if over any; `v` leads there from its corner.
+fn outside(extent: &Extent, normal: &[Ratio; 3], v: &[Ratio; 3]) -> Option<Reason> {
+    // Along the sides, not of unit length: (N·N)·xdir − (N·xdir)·N, and N × that.
+    let xdir = ratio3(extent.xdir);
+    let (nn, nx) = (dot(normal, normal), dot(normal, &xdir));
+    let first = [0, 1, 2].map(|i| &xdir[i] * &nn - &normal[i] * &nx);
+    let second = [(1, 2), (2, 0), (0, 1)]
+        .map(|(i, j)| &normal[i] * &first[j] - &normal[j] * &first[i]);
+    for (side, along) in [first, second].iter().enumerate() {
+        let length = extent.dimensions[side];
+        let (p, size2) = (dot(along, v), dot(along, along));
+        let before = !is_positive(&p) && !is_zero(&p);
+        if before || &p * &p > ratio(length) * ratio(length) * &size2 {
+            let at = p.to_f64().value() / size2.to_f64().value().sqrt();
+            return Some(Reason::Outside { side, at, length });
+        }
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -140,7 +192,7 @@ mod tests {
             "camera c {{ pixeldim 3 3 worlddim 2 2 viewpoint 1 1 2 }} material m {{ ambient 1 1 1 }} {objects}"
         );
         let scene = plumb::scene::parse("test", text.as_bytes(), Path::new("")).unwrap();
-        let ray = ExactRay::new(&scene.camera, 1, 1);
+        let ray = ExactRay::new(&scene.camera, 1.0, 1.0);
         assert_eq!(ray.world_point(), [1.0, 1.0, 0.0]);
         (0..scene.objects.len())
             .map(|i| ray.ask(&scene, i, screen_tolerance))
@@ -168,6 +220,32 @@ mod tests {
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
         assert_eq!(answers(&objects.join(" "), 0.5)[4], Verdict::Hit);
+    }
+
+    #[test]
+    fn rectangles_answer_why() {
+        // The ray meets the plane at (1, 1, −3).
+        let rectangle = |rest: &str| format!("fplane p {{ material m normal 0 0 7 {rest} }}");
+        let objects = [
+            rectangle("point 0 0 -3 xdir 2 0 9 dimensions 1 1"),
+            rectangle("point 0 0 -3 xdir 2 0 9 dimensions 0.75 1"),
+            rectangle("point 0 0 -3 xdir 1 0 0 dimensions 1 0.9999999999999999"),
+            rectangle("point 0 2 -3 xdir 1 0 0 dimensions 1 1"),
+            // Turned by 45 degrees: the corner is √2 away, and only the square of that is rational.
+            rectangle("point 0 0 -3 xdir 1 1 0 dimensions 1.4142135623730951 1"),
+            rectangle("point 0 0 -3 xdir 1 1 0 dimensions 1.414213562373095 1"),
+        ];
+        let outside = |side, at, length| Verdict::Miss(Reason::Outside { side, at, length });
+        let root = 2.0_f64.sqrt();
+        let expected = [
+            Verdict::Hit,
+            outside(0, 1.0, 0.75),
+            outside(1, 1.0, 0.999_999_999_999_999_9),
+            outside(1, -1.0, 1.0),
+            Verdict::Hit,
+            outside(0, root, 1.414_213_562_373_095),
+        ];
+        assert_eq!(answers(&objects.join(" "), 0.0), expected);
     }
 
     #[test]

@@ -39,7 +39,10 @@ pub fn camera_setpix<R: Real>(value: V3<R>) -> Result<[u8; 3], Undecided> {
         if (scaled - R::exact(255.0)).non_negative()? {
             return Ok(255);
         }
-        // Reflectivities are not negative, so neither is v.
+        // Reflectivities are not negative, so neither is v: below 1 the byte is 0, however near to 0 that is.
+        if (R::exact(1.0) - scaled).positive()? {
+            return Ok(0);
+        }
         Ok(scaled.floor()? as u8)
     };
     Ok([byte(value.x)?, byte(value.y)?, byte(value.z)?])

@@ -90,8 +90,8 @@ fn tplane_odd<R: Real>(tiled: &Tiled<R>, position: V3<R>) -> Result<usize, Undec
     Ok(usize::from(tiled.index[0].odd(p)? != tiled.index[1].odd(q)?))
 }
 
-/// The texel at a point of a `texplane`, each channel byte/256.
-fn texel<R: Real>(scene: &Prepared<R>, textured: &Textured<R>, position: V3<R>) -> Result<V3<R>, Undecided> {
+/// Column and row of the texel at a point of a `texplane`, from the bottom left.
+pub fn texel_place<R: Real>(textured: &Textured<R>, position: V3<R>) -> Result<[usize; 2], Undecided> {
     let p = textured.extent.coordinates(position);
     let mut place = [0; 2];
     for (i, place) in place.iter_mut().enumerate() {
@@ -100,6 +100,12 @@ fn texel<R: Real>(scene: &Prepared<R>, textured: &Textured<R>, position: V3<R>) 
         let index = if textured.repeats { index.rem_euclid(size) } else { index.clamp(0.0, size - 1.0) };
         *place = index as usize;
     }
+    Ok(place)
+}
+
+/// The texel at a point of a `texplane`, each channel byte/256.
+fn texel<R: Real>(scene: &Prepared<R>, textured: &Textured<R>, position: V3<R>) -> Result<V3<R>, Undecided> {
+    let place = texel_place(textured, position)?;
     let texels = &scene.textures[textured.texture];
     // The picture's top row comes first.
     let row = texels.height as usize - 1 - place[1];

@@ -84,19 +84,41 @@ pub enum RayKind {
     Mirror,
 }
 
+/// Why a ray met nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unmet {
+    /// Nothing is there; this is a ray like any other, and has a number.
+    Nothing,
+    /// It was not followed, as the path before it is too long.
+    TooLong,
+    /// It was not followed, as its weight is zero.
+    Weightless,
+}
+
 /// Sees how a colour comes about: `plumb probe` listens, rendering does not.
+///
+/// Rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then the mirror
+/// image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
 pub trait Watch<R> {
-    /// Ray `number` found nothing, or (None, true) was not followed as its path is too long.
-    fn missed(&mut self, number: u32, ray: &Branch<R>, too_long: bool) {
-        let _ = (number, ray, too_long);
+    /// `ray` met nothing; had it a number, that is `number`.
+    fn missed(&mut self, number: u32, ray: &Branch<R>, why: Unmet) {
+        let _ = (number, ray, why);
     }
     /// Ray `number` met `point` at distance `t`, where the ambient reflectivity is `ambient`.
     fn met(&mut self, number: u32, ray: &Branch<R>, t: R, point: &Point<R>, ambient: V3<R>) {
         let _ = (number, ray, t, point, ambient);
     }
     /// What a light does there.
-    fn light(&mut self, number: u32, light: usize, lit: &Lit<R>) {
-        let _ = (number, light, lit);
+    fn light(&mut self, light: usize, lit: &Lit<R>) {
+        let _ = (light, lit);
+    }
+    /// What the ray adds to the colour.
+    fn adds(&mut self, share: V3<R>) {
+        let _ = share;
+    }
+    /// The colour is as bright as it can get: so many rays that wait are not followed.
+    fn full(&mut self, waiting: usize) {
+        let _ = waiting;
     }
 }
 
@@ -234,11 +256,12 @@ impl<R: Real> Tree<'_, R> {
         let longest = R::exact(limits.max_path) * R::exact(two_to(-self.scene.camera.scale));
         while let Some(ray) = self.waiting.pop() {
             if self.saturated(limits.enough)? {
+                watch.full(self.waiting.len() + 1);
                 return Ok(());
             }
             let number = self.rays;
             if (ray.total - longest).positive()? {
-                watch.missed(number, &ray, true);
+                watch.missed(number, &ray, Unmet::TooLong);
                 continue;
             }
             if self.rays == limits.max_rays {
@@ -248,7 +271,7 @@ impl<R: Real> Tree<'_, R> {
             let range = Range { skip: ray.last, beyond: None, light: None };
             match closest_from(self.world, ray.base, ray.dir, &range)? {
                 Some(met) => self.shade(number, &ray, met.t, &met.point, watch)?,
-                None => watch.missed(number, &ray, false),
+                None => watch.missed(number, &ray, Unmet::Nothing),
             }
         }
         Ok(())
@@ -279,7 +302,7 @@ impl<R: Real> Tree<'_, R> {
         watch.met(number, ray, t, point, color);
         for light in 0..world.lights.len() {
             let lit = light_term(scene, world, light, point, normal, ray.base)?;
-            watch.light(number, light, &lit);
+            watch.light(light, &lit);
             if let Lit::Lit { diffuse, glint, .. } = lit {
                 color = color + diffuse + glint;
             }
@@ -289,12 +312,17 @@ impl<R: Real> Tree<'_, R> {
         let one = R::exact(1.0);
         let kept = if material.clear { one - material.transparency } else { one };
         let unit = R::exact(two_to(-scene.camera.scale));
-        self.color = self.color + ray.weight.each(color) * (kept / total * unit);
+        let share = ray.weight.each(color) * (kept / total * unit);
+        watch.adds(share);
+        self.color = self.color + share;
         let last = Some(world.groups[point.object]);
         let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>| {
             // A ray that counts for nothing need not be traced.
-            if weight.approx() != glam::DVec3::ZERO {
-                self.waiting.push(Branch { base: point.position, dir, total, last, weight, parent: number, kind });
+            let branch = Branch { base: point.position, dir, total, last, weight, parent: number, kind };
+            if weight.approx() == glam::DVec3::ZERO {
+                watch.missed(number, &branch, Unmet::Weightless);
+            } else {
+                self.waiting.push(branch);
             }
         };
         if material.mirror {

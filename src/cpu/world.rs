@@ -64,12 +64,13 @@ pub fn closest_from<R: Real>(
             Some(light) if sphere.level.binary_search(&light.number).is_ok() => !entry(light.number)?,
             _ => false,
         };
-        if !skipped && !at_light {
-            if let Some(t) = sphere_hits_from(sphere, base, dir)? {
-                let position = base + dir * t;
-                let from_center = position - sphere.center;
-                nearer(&mut closest, Met { t, point: Point { object: sphere.object, position, from_center } }, range)?;
-            }
+        if !skipped
+            && !at_light
+            && let Some(t) = sphere_hits_from(sphere, base, dir)?
+        {
+            let position = base + dir * t;
+            let from_center = position - sphere.center;
+            nearer(&mut closest, Met { t, point: Point { object: sphere.object, position, from_center } }, range)?;
         }
         let limit = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
         Ok(closest.as_ref().map_or(limit, |met| met.t.approx()))
@@ -93,15 +94,15 @@ fn ends_at<R>(range: &Range<R>, level: &[usize]) -> bool {
 
 /// Takes `met` if it is in range, and nearer than `closest` or as near and first in the file.
 fn nearer<R: Real>(closest: &mut Option<Met<R>>, met: Met<R>, range: &Range<R>) -> Result<(), Undecided> {
-    if let Some(beyond) = range.beyond {
-        if !(met.t - beyond).positive()? {
-            return Ok(());
-        }
+    if let Some(beyond) = range.beyond
+        && !(met.t - beyond).positive()?
+    {
+        return Ok(());
     }
-    if let Some(light) = &range.light {
-        if !(light.distance - met.t).positive()? {
-            return Ok(());
-        }
+    if let Some(light) = &range.light
+        && !(light.distance - met.t).positive()?
+    {
+        return Ok(());
     }
     let takes = match closest {
         None => true,

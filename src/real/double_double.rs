@@ -221,10 +221,9 @@ mod tests {
             widest = widest.max(value.error / value.hi.abs());
             let square = x * x + y * y;
             let root = square.sqrt();
-            let (low, high) = (root.hi - root.error, root.hi + root.error);
-            let tail = ratio(root.lo);
+            let middle = ratio(root.hi) + ratio(root.lo);
             let exact = &ra * &ra + &rb * &rb;
-            let (low, high) = (ratio(low) + &tail, ratio(high) + &tail);
+            let (low, high) = (&middle - ratio(root.error), &middle + ratio(root.error));
             assert!(&low * &low <= exact && exact <= &high * &high, "{a} {b}");
         }
         assert!(widest < 1e-20, "a bound of {widest} decides nothing");

@@ -58,6 +58,23 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// How the pixels of a picture of this width are sampled, in the rows below `end`.
+    pub fn sampling(&self, width: u32, end: u32) -> Jitter {
+        match (self.samples, self.jitter) {
+            (0 | 1, _) => Jitter::Once,
+            (samples, Spread::Hash) => Jitter::Hash(samples),
+            (samples, Spread::Course) => Jitter::Course(Course::new(width, end, samples)),
+        }
+    }
+
+    /// The limits of a sample: where the values themselves are wanted, those above 1 count too.
+    pub fn sample_limits(&self) -> Limits {
+        let enough = if self.values { f64::INFINITY } else { f64::from(self.samples) };
+        Limits { enough, ..self.limits }
+    }
+}
+
 /// How the samples of a pixel are spread over it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -250,13 +267,8 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     let job = Job {
         scene,
         view: View::new(settings.screen_tolerance, settings.samples),
-        jitter: match (settings.samples, settings.jitter) {
-            (0 | 1, _) => Jitter::Once,
-            (samples, Spread::Hash) => Jitter::Hash(samples),
-            (samples, Spread::Course) => Jitter::Course(Course::new(width, rows.end, samples)),
-        },
-        // Where the values themselves are wanted, those above 1 count too.
-        limits: Limits { enough: if settings.values { f64::INFINITY } else { f64::from(settings.samples) }, ..settings.limits },
+        jitter: settings.sampling(width, rows.end),
+        limits: settings.sample_limits(),
         width,
         rows,
         settings,

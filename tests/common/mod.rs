@@ -15,8 +15,8 @@ pub(crate) fn scenes() -> PathBuf {
 /// The scenes of ours that are right, by folder and name.
 pub(crate) fn good_scenes() -> Vec<PathBuf> {
     let mut found = Vec::new();
-    for folder in ["notes", "gallery", "known", "hard"] {
-        let entries = std::fs::read_dir(scenes().join(folder)).unwrap();
+    for folder in ["notes", "gallery", "known", "hard", "lit"] {
+        let Ok(entries) = std::fs::read_dir(scenes().join(folder)) else { panic!("no folder scenes/{folder}") };
         found.extend(entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "txt")));
     }
     found.sort();
