@@ -14,9 +14,11 @@ use plumb::scene::Scene;
 
 /// The most pixels a side, as `pixeldim` has it.
 const MOST_PIXELS: u32 = 1_000_000;
-/// More threads than any machine has; a typing error is told here, not by the system running out of them.
 /// More samples than this show nothing more, and take hours.
 const MOST_SAMPLES: i64 = 65_536;
+/// The offsets of this many samples are held in memory at a time, for a row: a quarter of a gigabyte a thread.
+const MOST_COURSE_SAMPLES: u64 = 1 << 24;
+/// More threads than any machine has; a typing error is told here, not by the system running out of them.
 const MOST_THREADS: usize = 4096;
 
 /// What changes which picture a scene is.
@@ -28,17 +30,43 @@ pub(crate) struct PictureOptions {
     /// Planes count only where z ≤ T: 0 in the notes, 0.01 in the course's final program
     #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) screen_tolerance: f64,
-    /// Rays a pixel: 1 through its middle; more are spread over it, and their mean is taken
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=MOST_SAMPLES))]
+    /// Samples a pixel: 1 ray through its middle, or N spread over it, whose mean is taken (smooth edges)
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..=MOST_SAMPLES),
+        long_help = "\
+Samples a pixel, 1 to 65536. 1 is a ray through its middle; N are N rays spread over it, and the mean of their colours \
+is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures."
+    )]
     pub(crate) samples: u32,
-    /// How several samples are spread: by a hash, or as the course's program did (which 16 samples reproduce)
+    /// How several samples are spread: by a hash, or as the course's program did
     #[arg(long, value_name = "SPREAD", value_enum, default_value_t)]
     pub(crate) jitter: JitterName,
-    /// A mirror image or a ray that goes through is not followed from farther than D along its path
-    #[arg(long, value_name = "D", default_value_t = Limits::default().max_path, value_parser = path)]
+    /// Mirror images and what is seen through things end where the path from the viewpoint is longer than D
+    #[arg(
+        long,
+        value_name = "D",
+        default_value_t = Limits::default().max_path,
+        value_parser = path,
+        allow_negative_numbers = true,
+        long_help = "\
+Mirror images and what is seen through transparent things end where the path from the viewpoint, in world units along \
+the rays, is longer than D. 0 shows neither; the first ray is as long as it takes. It matters only in scenes with lights."
+    )]
     pub(crate) max_path: f64,
-    /// A sample that needs more rays than this (mirrors and transparent surfaces multiply them) is an error
-    #[arg(long, value_name = "N", default_value_t = Limits::default().max_rays, value_parser = clap::value_parser!(u32).range(1..))]
+    /// A sample that needs more rays than N is an error: mirrors and transparent things multiply them
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = Limits::default().max_rays,
+        value_parser = clap::value_parser!(u32).range(1..),
+        long_help = "\
+A sample that needs more rays than N is an error that names its pixel, and no picture is made: where something is a \
+mirror and transparent too, every ray that meets it becomes two, and such a tree can have millions. Shadow rays do not \
+count. A smaller --max-path makes the tree smaller; `plumb probe` shows it."
+    )]
     pub(crate) max_rays: u32,
 }
 
@@ -63,7 +91,25 @@ impl PictureOptions {
 
     /// How far rays are followed.
     pub(crate) fn limits(&self) -> Limits {
-        Limits { max_path: self.max_path, max_rays: self.max_rays, ..Limits::default() }
+        Limits {
+            max_path: self.max_path,
+            max_rays: self.max_rays,
+            ..Limits::default()
+        }
+    }
+
+    /// Refuses what would take memory without end; `scene` has its final size.
+    pub(crate) fn check(&self, scene: &Scene) -> Result<()> {
+        let width = scene.camera.pixeldim[0];
+        let course = self.samples > 1 && self.jitter == JitterName::Course;
+        if course && u64::from(width) * u64::from(self.samples) > MOST_COURSE_SAMPLES {
+            bail!(
+                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {} samples \
+                 has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory",
+                self.samples
+            );
+        }
+        Ok(())
     }
 }
 
@@ -119,6 +165,7 @@ offset the pixel's number, from the top left of the whole picture."
 impl RenderOptions {
     /// The settings for rendering `scene`, which has its final size.
     pub(crate) fn settings(&self, scene: &Scene, values: bool) -> Result<Settings> {
+        self.picture.check(scene)?;
         let height = scene.camera.pixeldim[1];
         if let Some(rows) = &self.rows
             && rows.end > height
@@ -135,7 +182,9 @@ impl RenderOptions {
             );
         }
         if self.picture.samples > 1 && !self.debug.is_empty() {
-            bail!("--debug lists the ray through the middle of a pixel, and --samples takes others: leave one of them out");
+            bail!(
+                "--debug lists the ray through the middle of a pixel, and --samples takes others: leave one of them out"
+            );
         }
         Ok(Settings {
             rows: self.rows.clone(),
@@ -182,9 +231,21 @@ impl From<BackendName> for Backend {
 /// How samples are spread, by name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub(crate) enum JitterName {
+    /// A hash of column, row and sample: any rows are the same as in the whole picture
     #[default]
     Hash,
+    /// The C library's random(), from the bottom row on, as the course's program drew it: with 16 samples, its pictures
     Course,
+}
+
+impl JitterName {
+    /// What spreads the samples.
+    pub(crate) fn meaning(self) -> &'static str {
+        match self {
+            Self::Hash => "a hash",
+            Self::Course => "the C library's random(), as the course's program did",
+        }
+    }
 }
 
 impl From<JitterName> for Spread {
@@ -247,10 +308,14 @@ fn tolerance(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "say a finite number, like 0.01".to_owned())
 }
 
-/// A length of a path.
+/// A length of a path: finite, not negative.
 fn path(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| *number >= 0.0);
-    number.ok_or_else(|| "say a number that is not negative, like 20".to_owned())
+    let number = text.parse::<f64>().ok();
+    let length = number.filter(|number| number.is_finite() && *number >= 0.0);
+    // Adding 0 makes −0 and 0 the same.
+    length
+        .map(|length| length + 0.0)
+        .ok_or_else(|| "say a length in world units, 0 or more, like 20".to_owned())
 }
 
 /// At least one thread.
@@ -314,6 +379,24 @@ mod tests {
         assert_eq!(tolerance("-0.5"), Ok(-0.5));
         for bad in ["nan", "inf", "-inf", "1e999", "", "x"] {
             assert!(tolerance(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn paths_are_finite_and_not_negative() {
+        for (text, length) in [
+            ("0", 0.0),
+            ("-0", 0.0),
+            ("20", 20.0),
+            ("1e6", 1e6),
+            ("1e300", 1e300),
+            ("0.5", 0.5),
+        ] {
+            assert_eq!(path(text), Ok(length));
+        }
+        assert!(path("-0").is_ok_and(f64::is_sign_positive));
+        for bad in ["-1", "nan", "inf", "1e999", "", "far"] {
+            assert!(path(bad).is_err(), "{bad}");
         }
     }
 

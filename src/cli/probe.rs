@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use anyhow::{Result, anyhow, bail};
 use plumb::cpu::camera::{Ray, camera_getdir, camera_setpix, inverse_distance};
 use plumb::cpu::debug::hit_point;
-use plumb::cpu::pixel::{Jitter, Sampling, trace_pixel};
+use plumb::cpu::pixel::{Jitter, Sampling, Stages};
 use plumb::cpu::plane::plane_hits;
 use plumb::cpu::sphere::sphere_hits;
 use plumb::cpu::trace::{Fault, Hit, Limits, Traced, Unwatched, ray_trace};
@@ -129,6 +129,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
 /// A pixel of a scene.
 struct Probe<'a> {
     scene: &'a Scene,
+    view: View,
     prepared: Prepared<f64>,
     picture: &'a PictureOptions,
     limits: Limits,
@@ -148,6 +149,7 @@ impl<'a> Probe<'a> {
         let view = View::new(settings.screen_tolerance, settings.samples);
         Self {
             scene,
+            view,
             prepared: Prepared::new(scene, view),
             picture: &args.picture,
             limits: settings.sample_limits(),
@@ -192,7 +194,8 @@ impl<'a> Probe<'a> {
             )?;
         }
         // As rendering has them, whatever it does to be sure of them.
-        let bytes = match trace_pixel(&self.prepared, &self.limits, sampling, self.x, self.y) {
+        let stages = Stages::new(self.scene, self.view);
+        let bytes = match stages.trace(&self.limits, sampling, self.x, self.y) {
             Ok((_, bytes)) => bytes,
             Err(_) => return Ok(Err(Fault::TooManyRays)),
         };
@@ -200,7 +203,7 @@ impl<'a> Probe<'a> {
         let doubt = match camera_setpix(color) {
             Ok(same) if same == bytes => String::new(),
             Ok([r, g, b]) => format!(" (f64 alone: {r} {g} {b})"),
-            Err(Undecided) => " (out of f64's range, so the pixel stays black)".to_owned(),
+            Err(Undecided) => " (f64 alone cannot tell)".to_owned(),
         };
         line(to, "bytes", format!("{r} {g} {b}{doubt}"))?;
         Ok(Ok(()))
@@ -217,7 +220,11 @@ impl<'a> Probe<'a> {
     }
 
     /// Shows the chosen sample, then what each brings; returns their mean.
-    fn several(&self, offsets: &[[f64; 2]], to: &mut dyn Write) -> io::Result<Result<V3<f64>, Fault>> {
+    fn several(
+        &self,
+        offsets: &[[f64; 2]],
+        to: &mut dyn Write,
+    ) -> io::Result<Result<V3<f64>, Fault>> {
         if let Some(sample) = self.chosen {
             let offset = offsets[sample as usize];
             line(
@@ -336,7 +343,13 @@ struct Sight<'a> {
 impl Sight<'_> {
     /// What every object answered, in the order of the file.
     fn objects(&self, traced: &Traced<f64>) -> Result<String, Undecided> {
-        let Probe { scene, prepared, picture, all, .. } = self.probe;
+        let Probe {
+            scene,
+            prepared,
+            picture,
+            all,
+            ..
+        } = self.probe;
         let mut text = String::new();
         let hits = self.hits()?;
         let objects = &scene.objects;
@@ -371,7 +384,7 @@ impl Sight<'_> {
             let _ = match (hit, verdict) {
                 (Some(hit), verdict) => {
                     let point = hit_point(scene, prepared, traced, hit);
-                    let t = 1.0 / inverse_distance(prepared.camera, &self.ray, hit.inverse);
+                    let t = 1.0 / inverse_distance(&prepared.camera, &self.ray, hit.inverse);
                     let doubt = match verdict {
                         Verdict::Hit => String::new(),
                         Verdict::Miss(reason) => format!(" (in f64; exactly: miss, {reason})"),
@@ -420,7 +433,9 @@ impl Sight<'_> {
 
     /// What the ray hits first.
     fn closest(&self, traced: &Traced<f64>, to: &mut dyn Write) -> io::Result<()> {
-        let Probe { scene, prepared, .. } = self.probe;
+        let Probe {
+            scene, prepared, ..
+        } = self.probe;
         let Some(hit) = &traced.hit else {
             return line(to, "hit", "nothing".to_owned());
         };

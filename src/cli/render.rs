@@ -10,7 +10,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use plumb::cpu::debug::list_pixels;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
-use plumb::render::{self, Backend, Report, Settings};
+use plumb::render::{self, Backend, PixelFault, Report, Settings};
 use plumb::scene::{Scene, list_model};
 use serde::Serialize;
 
@@ -228,11 +228,17 @@ impl<'a> Job<'a> {
             entry("plumb:scene", scene.to_string_lossy().into_owned()),
             entry("plumb:size", format!("{width}x{height}")),
             entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
-            entry("plumb:screen-tolerance", picture.screen_tolerance.to_string()),
+            entry(
+                "plumb:screen-tolerance",
+                picture.screen_tolerance.to_string(),
+            ),
             entry("plumb:samples", picture.samples.to_string()),
         ];
         if picture.samples > 1 {
-            entries.push(entry("plumb:jitter", format!("{:?}", picture.jitter).to_lowercase()));
+            entries.push(entry(
+                "plumb:jitter",
+                format!("{:?}", picture.jitter).to_lowercase(),
+            ));
         }
         if !self.scene.lights.is_empty() {
             entries.push(entry("plumb:max-path", picture.max_path.to_string()));
@@ -249,6 +255,9 @@ impl<'a> Job<'a> {
                     render::install_hint()
                 )
             }
+            render::Error::TooManyRays(PixelFault { x, y, .. }) => {
+                anyhow!("{error}; `plumb probe SCENE {x} {y}` shows what they do")
+            }
             error => anyhow::Error::new(error),
         }
     }
@@ -259,12 +268,24 @@ impl<'a> Job<'a> {
             return Ok(());
         };
         let prepared = Prepared::new(&self.scene, settings.screen_tolerance);
+        let mut limits = settings.sample_limits();
+        if shown.drgb {
+            // A picture is done with a sample at full brightness; this asks how bright it is.
+            limits.enough = f64::INFINITY;
+        }
         let [start, end] = report.rows;
         let mut stderr = io::BufWriter::new(io::stderr().lock());
-        let listed = list_pixels(&self.scene, &prepared, &settings.limits, start..end, shown, &mut stderr)
-            // The notes' listing begins lines and ends none; what follows begins one of its own.
-            .and_then(|()| stderr.write_all(b"\n"))
-            .and_then(|()| stderr.flush());
+        let listed = list_pixels(
+            &self.scene,
+            &prepared,
+            &limits,
+            start..end,
+            shown,
+            &mut stderr,
+        )
+        // The notes' listing begins lines and ends none; what follows begins one of its own.
+        .and_then(|()| stderr.write_all(b"\n"))
+        .and_then(|()| stderr.flush());
         listed.context("cannot list the pixels on stderr")
     }
 

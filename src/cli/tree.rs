@@ -39,7 +39,6 @@ pub(crate) struct Tree<'a> {
     indent: String,
     /// Length of the longest name of a light.
     widest_light: usize,
-    /// Weight of the ray at hand, and path up to what it met.
     counts: Counts,
     lights: LightCounts,
 }
@@ -102,6 +101,7 @@ impl<'a> Tree<'a> {
             full,
             hidden,
         } = self.counts;
+        self.indent.clear();
         if hidden > 0 {
             self.line(&format!("  … and {hidden} more (--all shows them)"));
         }
@@ -124,8 +124,7 @@ impl<'a> Tree<'a> {
             "the colour is full in all channels without them".to_owned(),
         );
         self.line(&format!(
-            "{:<13}{}: {}",
-            "in all",
+            "in all       {}: {}",
             say::count(met + nothing, "ray"),
             parts.join(", ")
         ));
@@ -185,9 +184,7 @@ impl<'a> Tree<'a> {
             && let Ok([column, row]) = texel_place(textured, point.position)
         {
             let texture = &self.scene.textures[textured.texture].name;
-            text += &format!(
-                ", texture {texture} at column {column}, row {row} from the bottom"
-            );
+            text += &format!(", texture {texture} at column {column}, row {row} from the bottom");
         }
         text
     }

@@ -166,8 +166,8 @@ fn outside(extent: &Extent, normal: &[Ratio; 3], v: &[Ratio; 3]) -> Option<Reaso
     let xdir = ratio3(extent.xdir);
     let (nn, nx) = (dot(normal, normal), dot(normal, &xdir));
     let first = [0, 1, 2].map(|i| &xdir[i] * &nn - &normal[i] * &nx);
-    let second = [(1, 2), (2, 0), (0, 1)]
-        .map(|(i, j)| &normal[i] * &first[j] - &normal[j] * &first[i]);
+    let second =
+        [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &normal[i] * &first[j] - &normal[j] * &first[i]);
     for (side, along) in [first, second].iter().enumerate() {
         let length = extent.dimensions[side];
         let (p, size2) = (dot(along, v), dot(along, along));

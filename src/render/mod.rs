@@ -273,9 +273,19 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
         rows,
         settings,
     };
-    match gpu {
-        Some(gpu) => job.on_gpu(&gpu, emit, &mut report)?,
-        None => job.on_cpu(emit, &mut report)?,
+    let done = match gpu {
+        Some(gpu) => job.on_gpu(&gpu, emit, &mut report),
+        None => job.on_cpu(emit, &mut report),
+    };
+    match done {
+        // Found before the first band, so nothing is rendered twice.
+        Err(Error::Gpu(error @ (GpuError::TooMany { .. } | GpuError::TooLarge { .. })))
+            if settings.backend == Backend::Auto =>
+        {
+            report.fallback = Some(format!("{error}, so the CPU renders"));
+            job.on_cpu(emit, &mut report)?;
+        }
+        done => done?,
     }
     report.seconds.total = start.elapsed().as_secs_f64();
     Ok(report)
