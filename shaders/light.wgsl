@@ -20,7 +20,7 @@ fn shadow(point: Point, d: vec3f, distance: f32, number: u32) -> vec3f {
     var range = Range(point.group, bit, 0.0, distance);
     loop {
         let met = closest_from(point.position, d, range);
-        steps += 1u;
+        steps += 2u;
         if met.object == NOTHING || steps > STEPS_LIMIT {
             return filter_;
         }

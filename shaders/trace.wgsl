@@ -1,5 +1,13 @@
 // The closest hit of a primary ray, the colour that a ray brings, and the entry point. Twin: src/cpu/trace.rs.
 
+//#if counted
+// Iterations of the loops so far, of all samples, the last one of each, which only finds the end, included: the driver may
+// end loops early that go round too often (lavapipe counts 65,535 for all loops of an invocation together), so a pixel
+// that comes near is handed to the CPU.
+var<private> steps: u32;
+const STEPS_LIMIT = 50000u;
+//#end
+
 //#if any_object
 struct Hit {
     // 1/s: the larger, the nearer; 0 is no hit.
@@ -50,11 +58,13 @@ fn find_closest_object(ray: Ray) -> Hit {
     }
 //#end
 //#if small_sphere_tree
-    // The steps are counted, since the driver may end a loop early that goes round too often: lavapipe stops at 65,535,
-    // for all loops of an invocation together, without a word.
     var walk = bvh_begin(vec3f(0.0), ray.w);
-    for (var step = 0u; step < BVH_STEPS; step += 1u) {
+    loop {
         let node = bvh[walk.index];
+        steps += 2u + node.count;
+        if steps > STEPS_LIMIT {
+            break;
+        }
         for (var i = node.first; i < node.first + node.count; i += 1u) {
             nearer(&closest, small_sphere_hits(small_spheres[i], ray), small_spheres[i].object);
         }
@@ -140,6 +150,7 @@ fn locate_met(base: vec3f, dir: vec3f, met: Met) -> Point {
 fn shade(point: Point, base: vec3f) -> vec3f {
     var color = getamb(point);
     let diffuse = getdiff(point);
+    steps += 1u;
     for (var i = 0u; i < LIGHTS; i += 1u) {
         steps += 1u;
         if steps > STEPS_LIMIT {
@@ -202,7 +213,7 @@ fn ray_trace(ray: Ray) -> Traced {
             traced.verdict = UNDECIDED;
             break;
         }
-        steps += 1u;
+        steps += 2u;
 //#end
         let total = branch.total + t;
         let material = materials[objects[point.object].material];
@@ -286,6 +297,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if samples
     var traced: Traced;
     for (var sample = 0u; sample < SAMPLES; sample += 1u) {
+        steps += 1u + PRIMARY_STEPS;
+        if steps > STEPS_LIMIT {
+            traced.verdict = UNDECIDED;
+            break;
+        }
 //#if course
         let offset = offsets[place * SAMPLES + sample];
 //#else

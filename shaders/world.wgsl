@@ -21,11 +21,6 @@ const NOTHING = 0xffffffffu;
 // More than any distance, and still a number when multiplied by a direction.
 const T_MAX = 1e30f;
 
-// Iterations of the loops so far, of all samples: the driver may end loops early that go round too often (lavapipe counts
-// 65,535 for all loops of an invocation together), so a pixel that comes near is handed to the CPU.
-var<private> steps: u32;
-const STEPS_LIMIT = 60000u;
-
 // Takes a hit if it is nearer, or as near and first in the file.
 fn met_nearer(closest: ptr<function, Met>, t: f32, object: u32) {
     if t > 0.0 && (t < (*closest).t || (t == (*closest).t && object < (*closest).object)) {
@@ -58,7 +53,7 @@ fn closest_from(base: vec3f, dir: vec3f, range: Range) -> Met {
     var walk = bvh_begin(base, dir);
     loop {
         let node = bvh[walk.index];
-        steps += 1u + node.count;
+        steps += 2u + node.count;
         if steps > STEPS_LIMIT {
             break;
         }
@@ -101,7 +96,7 @@ fn anything_from(base: vec3f, dir: vec3f, range: Range) -> bool {
     var walk = bvh_begin(base, dir);
     loop {
         let node = bvh[walk.index];
-        steps += 1u + node.count;
+        steps += 2u + node.count;
         if steps > STEPS_LIMIT {
             return true;
         }

@@ -77,16 +77,27 @@ fn a_walk_that_takes_too_long_is_handed_to_the_cpu() {
 /// The same for shadow rays: the light would be lost, or the shadow.
 #[test]
 fn a_shadow_ray_that_takes_too_long_is_handed_to_the_cpu() {
-    let balls = (0..40_000).map(|i| ball(DVec3::new(1.95, 1.95, 3.0 + 2.1 * f64::from(i)), 1.0, 0));
+    let balls = (0..70_000).map(|i| ball(DVec3::new(1.95, 1.95, 3.0 + 2.1 * f64::from(i)), 1.0, 0));
     let mut objects: Vec<Object> = balls.collect();
     objects.push(wall(-1.0, 1));
     let mut scene = scene([1, 1], objects);
-    let location = DVec3::new(1.0, 1.0, 1e5);
+    let location = DVec3::new(1.0, 1.0, 2e5);
     scene.lights.push(Light { name: "sun".into(), location, emissivity: DVec3::splat(1e5), cone: None });
     let (gpu, report) = picture(&scene, &on(Backend::Gpu));
     assert_eq!(report.refined, 1);
     assert_eq!(gpu, picture(&scene, &on(Backend::Cpu)).0);
     assert!(gpu[2] > 0, "{gpu:?}");
+}
+
+/// More samples than the loops are sure to make are taken by the CPU, not dropped.
+#[test]
+fn many_samples_are_not_cut() {
+    let objects: Vec<Object> = (1..100).map(|i| wall(-2.0 - f64::from(100 - i), 1)).collect();
+    let scene = scene([2, 1], objects);
+    let settings = Settings { samples: 1000, ..on(Backend::Gpu) };
+    let (gpu, report) = picture(&scene, &settings);
+    assert_eq!(report.refined, 2, "1,000 times 99 objects are more than 65,535");
+    assert_eq!(gpu, picture(&scene, &Settings { backend: Backend::Cpu, ..settings }).0);
 }
 
 /// 100,000 spheres, found through the tree: the GPU's picture is the CPU's.
@@ -115,7 +126,7 @@ fn a_hundred_thousand_spheres_agree() {
 /// A picture wider than high, higher than wide, of one pixel: every dispatch shape gives the CPU's picture.
 #[test]
 fn odd_sizes_agree() {
-    let objects = || vec![wall(-4.0, 1), ball(DVec3::new(1.0, 1.0, -3.0), 1.0, 1)];
+    let objects = || vec![wall(-4.037, 1), ball(DVec3::new(1.013, 0.971, -3.03), 0.87, 1)];
     for pixeldim in [[1, 1], [1, 517], [517, 1], [17, 16], [15, 33], [70_000, 1]] {
         let scene = scene(pixeldim, objects());
         let (gpu, _) = picture(&scene, &on(Backend::Gpu));

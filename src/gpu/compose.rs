@@ -98,11 +98,13 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     count("small_sphere_loop", "SMALL_SPHERES", packed.small_spheres.len());
     count("wide_sphere_loop", "WIDE_SPHERES", packed.wide_spheres.len());
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
-    count("small_sphere_tree", "BVH_STEPS", bvh_steps(packed));
     count("samples", "SAMPLES", features.samples as usize);
+    // The last round of each of up to four loops only finds its end.
+    count("samples", "PRIMARY_STEPS", if features.unrolled { 0 } else { packed.loop_iterations() + 4 });
     if let Some(lit) = &packed.lit {
         count("lit", "LIGHTS", lit.lights.len());
-        count("world_loop", "WORLD_STEPS", lit.loop_iterations());
+        // The last round of either loop only finds its end.
+        count("world_loop", "WORLD_STEPS", lit.loop_iterations() + 2);
         count("world_plane_loop", "WORLD_PLANES", lit.planes.len());
         count("world_sphere_loop", "WORLD_TREE", lit.in_tree);
         count("world_sphere_loop", "WORLD_SPHERES", lit.spheres.len());
@@ -125,14 +127,8 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
 /// lavapipe ends every loop of an invocation, without a word, once they have gone round 65,535 times together.
 const LOOP_LIMIT: usize = 65_535;
 
-/// Iterations that the loops outside the tree may take, with half the limit left for the tree.
+/// Most iterations of the loops outside the tree, for one primary ray. The shader counts those of the others.
 pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
-
-/// Steps down the tree after which a pixel is handed to the CPU. A step is one iteration and as many as its leaf holds.
-fn bvh_steps(packed: &Packed) -> usize {
-    let leaf = packed.bvh.iter().map(|node| node.count as usize).max().unwrap_or(0);
-    (LOOP_LIMIT - LOOP_ITERATIONS) / (1 + leaf)
-}
 
 /// The procedural shaders used, and those that they call.
 fn procedural(features: &FeatureSet) -> String {

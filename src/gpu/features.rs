@@ -169,6 +169,7 @@ impl FeatureSet {
             ("values", self.values),
             ("samples", any && self.samples > 1),
             ("course", any && self.course),
+            ("counted", any && (is_lit || self.bvh || self.samples > 1)),
             ("lit", is_lit),
             ("lit_sphere", lit.spheres),
             ("lit_plane", lit.planes),
