@@ -1,7 +1,7 @@
 //! Twin of `shaders/light.wgsl`: what a light brings to a hit point.
 
 use super::surface::{Point, getdiff, tile_material};
-use super::world::{Range, Toward, closest_from};
+use super::world::{Range, Toward, hits_from};
 use crate::prepare::exact::two_to;
 use crate::prepare::{Light, Prepared, World};
 use crate::real::{Real, Undecided, V3};
@@ -85,19 +85,32 @@ fn shadow<R: Real>(
     d: V3<R>,
     light: Toward<R>,
 ) -> Result<Result<V3<R>, usize>, Undecided> {
+    let range = Range { skip: Some(world.groups[point.object]), light: Some(light) };
+    let reach = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
+    let opaque = |object: usize| !scene.palette[scene.materials[object]].clear;
+    let mut dark = None;
+    let mut met = Vec::new();
+    // The factors may come in any order: one look at the scene, however many panes the light goes through.
+    hits_from(world, point.position, d, &range, &mut |hit| {
+        let object = hit.point.object;
+        if opaque(object) && !world.shared[object] {
+            dark = Some(object);
+            return Ok(-1.0);
+        }
+        met.push(hit.point);
+        Ok(reach)
+    })?;
+    // Of coincident surfaces only the first in the file counts.
+    met.sort_unstable_by_key(|point| (world.groups[point.object], point.object));
+    met.dedup_by_key(|point| world.groups[point.object]);
+    if let Some(blocker) = dark.or_else(|| met.iter().map(|point| point.object).find(|&object| opaque(object))) {
+        return Ok(Err(blocker));
+    }
     let one = R::exact(1.0);
     let mut filter = V3::new(one, one, one);
-    let mut range = Range { skip: Some(world.groups[point.object]), beyond: None, light: Some(light) };
-    while let Some(met) = closest_from(world, point.position, d, &range)? {
-        let object = met.point.object;
-        let material = &scene.palette[scene.materials[object]];
-        if !material.clear {
-            return Ok(Err(object));
-        }
-        let tint = scene.palette[tile_material(scene, &met.point)?].tint;
-        filter = filter.each(tint) * material.transparency;
-        range.skip = Some(world.groups[object]);
-        range.beyond = Some(met.t);
+    for point in &met {
+        let material = &scene.palette[scene.materials[point.object]];
+        filter = filter.each(scene.palette[tile_material(scene, point)?].tint) * material.transparency;
     }
     Ok(Ok(filter))
 }

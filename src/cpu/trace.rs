@@ -268,7 +268,7 @@ impl<R: Real> Tree<'_, R> {
                 return Err(Fault::TooManyRays);
             }
             self.rays += 1;
-            let range = Range { skip: ray.last, beyond: None, light: None };
+            let range = Range { skip: ray.last, light: None };
             match closest_from(self.world, ray.base, ray.dir, &range)? {
                 Some(met) => self.shade(number, &ray, met.t, &met.point, watch)?,
                 None => watch.missed(number, &ray, Unmet::Nothing),

@@ -21,8 +21,6 @@ pub struct Met<R> {
 pub struct Range<R> {
     /// The group of surfaces that the ray left from, which it cannot meet.
     pub skip: Option<u32>,
-    /// Hits count only beyond this.
-    pub beyond: Option<R>,
     /// A shadow ray's light: hits count only before it.
     pub light: Option<Toward<R>>,
 }
@@ -45,16 +43,48 @@ pub fn closest_from<R: Real>(
     range: &Range<R>,
 ) -> Result<Option<Met<R>>, Undecided> {
     let mut closest: Option<Met<R>> = None;
+    hits_from(world, base, dir, range, &mut |met| {
+        let takes = match &closest {
+            None => true,
+            Some(best) => {
+                let difference = best.t - met.t;
+                difference.positive()? || (met.point.object < best.point.object && difference.non_negative()?)
+            }
+        };
+        if takes {
+            closest = Some(met);
+        }
+        Ok(closest.as_ref().map_or(f64::INFINITY, |best| best.t.approx()))
+    })?;
+    Ok(closest)
+}
+
+/// Calls `take` with everything that the ray meets in range, in no order. `take` returns how far hits still matter; below
+/// 0 it is told of no more of them.
+pub fn hits_from<R: Real>(
+    world: &World<R>,
+    base: V3<R>,
+    dir: V3<R>,
+    range: &Range<R>,
+    take: &mut impl FnMut(Met<R>) -> Result<f64, Undecided>,
+) -> Result<(), Undecided> {
+    let before_light = |t: R| range.light.as_ref().map_or(Ok(true), |light| (light.distance - t).positive());
+    let mut reach = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
     for plane in &world.planes {
         if range.skip == Some(world.groups[plane.object]) || ends_at(range, &plane.level) {
             continue;
         }
         if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)? {
-            let zero = V3::new(R::zero(), R::zero(), R::zero());
-            let point = Point { object: plane.object, position, from_center: zero };
-            nearer(&mut closest, Met { t, point }, range)?;
+            if before_light(t)? {
+                let zero = V3::new(R::zero(), R::zero(), R::zero());
+                reach = take(Met { t, point: Point { object: plane.object, position, from_center: zero } })?;
+                if reach < 0.0 {
+                    return Ok(());
+                }
+            }
         }
     }
+    let after_planes = reach;
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
         let sphere = &world.spheres[index];
         let skipped = range.skip == Some(world.groups[sphere.object]);
@@ -64,55 +94,29 @@ pub fn closest_from<R: Real>(
             Some(light) if sphere.level.binary_search(&light.number).is_ok() => !entry(light.number)?,
             _ => false,
         };
-        if !skipped
-            && !at_light
-            && let Some(t) = sphere_hits_from(sphere, base, dir)?
-        {
-            let position = base + dir * t;
-            let from_center = position - sphere.center;
-            nearer(&mut closest, Met { t, point: Point { object: sphere.object, position, from_center } }, range)?;
+        if !skipped && !at_light && reach >= 0.0 {
+            if let Some(t) = sphere_hits_from(sphere, base, dir)? {
+                if before_light(t)? {
+                    let position = base + dir * t;
+                    let from_center = position - sphere.center;
+                    reach = take(Met { t, point: Point { object: sphere.object, position, from_center } })?;
+                }
+            }
         }
-        let limit = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
-        Ok(closest.as_ref().map_or(limit, |met| met.t.approx()))
+        Ok(reach)
     };
     let mut treated = 0;
     if let Some(bvh) = &world.bvh {
-        let reach = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
-        bvh_hits(bvh, base.approx(), dir.approx(), reach, &mut sphere)?;
+        bvh_hits(bvh, base.approx(), dir.approx(), after_planes, &mut sphere)?;
         treated = bvh.len;
     }
     for index in treated..world.spheres.len() {
         sphere(index)?;
     }
-    Ok(closest)
+    Ok(())
 }
 
 /// Whether a shadow ray's light lies in the plane: then they meet at the light, not before it, or not at all.
 fn ends_at<R>(range: &Range<R>, level: &[usize]) -> bool {
     range.light.as_ref().is_some_and(|light| level.binary_search(&light.number).is_ok())
-}
-
-/// Takes `met` if it is in range, and nearer than `closest` or as near and first in the file.
-fn nearer<R: Real>(closest: &mut Option<Met<R>>, met: Met<R>, range: &Range<R>) -> Result<(), Undecided> {
-    if let Some(beyond) = range.beyond
-        && !(met.t - beyond).positive()?
-    {
-        return Ok(());
-    }
-    if let Some(light) = &range.light
-        && !(light.distance - met.t).positive()?
-    {
-        return Ok(());
-    }
-    let takes = match closest {
-        None => true,
-        Some(best) => {
-            let difference = best.t - met.t;
-            difference.positive()? || (met.point.object < best.point.object && difference.non_negative()?)
-        }
-    };
-    if takes {
-        *closest = Some(met);
-    }
-    Ok(())
 }

@@ -9,10 +9,8 @@ use super::number;
 
 pub use super::limit::MAX_PIXELDIM;
 
-/// Number of procedural shaders for planes: a `pplane`'s `shader` is below it.
-pub const PPLANE_SHADERS: u32 = 3;
-/// Number of procedural shaders for spheres: a `psphere`'s `shader` is below it.
-pub const PSPHERE_SHADERS: u32 = 1;
+// The tables of shaders are made from the folder of shaders, in one place.
+pub use crate::cpu::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 /// The entity types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
