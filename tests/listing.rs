@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use plumb::cpu::debug::{Shown, list_pixels};
+use plumb::cpu::trace::Limits;
 use plumb::prepare::Prepared;
 use plumb::scene::{self, Scene};
 
@@ -76,7 +77,15 @@ fn parse(text: &str) -> Scene {
 
 fn listing(scene: &Scene, rows: std::ops::Range<u32>, shown: Shown) -> String {
     let mut listed = Vec::new();
-    list_pixels(scene, &Prepared::new(scene, 0.0), rows, shown, &mut listed).unwrap();
+    list_pixels(
+        scene,
+        &Prepared::new(scene, 0.0),
+        &Limits::default(),
+        rows,
+        shown,
+        &mut listed,
+    )
+    .unwrap();
     String::from_utf8(listed).unwrap()
 }
 

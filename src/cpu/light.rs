@@ -1,7 +1,9 @@
 //! Twin of `shaders/light.wgsl`: what a light brings to a hit point.
 
+use std::cmp::Ordering;
+
 use super::surface::{Point, getdiff, tile_material};
-use super::world::{Range, Toward, hits_from};
+use super::world::{Met, Range, Toward, hits_from};
 use crate::prepare::exact::two_to;
 use crate::prepare::{Light, Prepared, World};
 use crate::real::{Real, Undecided, V3};
@@ -88,22 +90,21 @@ fn shadow<R: Real>(
     let range = Range { skip: Some(world.groups[point.object]), light: Some(light) };
     let reach = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
     let opaque = |object: usize| !scene.palette[scene.materials[object]].clear;
-    let mut dark = None;
     let mut met = Vec::new();
-    // The factors may come in any order: one look at the scene, however many panes the light goes through.
+    let mut dark = None;
     hits_from(world, point.position, d, &range, &mut |hit| {
-        let object = hit.point.object;
-        if opaque(object) && !world.shared[object] {
-            dark = Some(object);
+        if !scene.any_clear {
+            dark = Some(hit.point.object);
             return Ok(-1.0);
         }
-        met.push(hit.point);
+        met.push(hit);
         Ok(reach)
     })?;
-    // Of coincident surfaces only the first in the file counts.
-    met.sort_unstable_by_key(|point| (world.groups[point.object], point.object));
-    met.dedup_by_key(|point| world.groups[point.object]);
-    if let Some(blocker) = dark.or_else(|| met.iter().map(|point| point.object).find(|&object| opaque(object))) {
+    if let Some(blocker) = dark {
+        return Ok(Err(blocker));
+    }
+    let met = one_at_a_place(world, met)?;
+    if let Some(blocker) = met.iter().map(|point| point.object).find(|&object| opaque(object)) {
         return Ok(Err(blocker));
     }
     let one = R::exact(1.0);
@@ -113,6 +114,26 @@ fn shadow<R: Real>(
         filter = filter.each(scene.palette[tile_material(scene, point)?].tint) * material.transparency;
     }
     Ok(Ok(filter))
+}
+
+/// Of surfaces met at the same place only the first in the file: seen from there the others are at t = 0, a miss.
+fn one_at_a_place<R: Real>(world: &World<R>, mut met: Vec<Met<R>>) -> Result<Vec<Point<R>>, Undecided> {
+    // Of coincident surfaces that is decided already.
+    met.sort_unstable_by_key(|met| (world.groups[met.point.object], met.point.object));
+    met.dedup_by_key(|met| world.groups[met.point.object]);
+    met.sort_by(|a, b| a.t.approx().total_cmp(&b.t.approx()));
+    let mut kept: Vec<Met<R>> = Vec::with_capacity(met.len());
+    for next in met {
+        match kept.last_mut() {
+            Some(last) if (next.t - last.t).sign()? == Ordering::Equal => {
+                if next.point.object < last.point.object {
+                    *last = next;
+                }
+            }
+            _ => kept.push(next),
+        }
+    }
+    Ok(kept.into_iter().map(|met| met.point).collect())
 }
 
 /// The glint: specular ∘ E · (h·N)ⁿ, h the unit vector halfway between the ways back and to the light.

@@ -71,6 +71,8 @@ pub struct Prepared<R> {
     pub materials: Vec<usize>,
     /// One for each object of the scene: whether it is a plane, not a sphere.
     pub is_plane: Vec<bool>,
+    /// Whether some object lets light through.
+    pub any_clear: bool,
     /// The materials of the scene.
     pub palette: Vec<Material<R>>,
     /// The textures of the scene.
@@ -101,10 +103,11 @@ impl<R: Real> Prepared<R> {
         let bvh = bvh::build(&mut spheres, |sphere| sphere.seen.is_some());
         let materials = scene.objects.iter().map(|object| object.material).collect();
         let is_plane = scene.objects.iter().map(|object| matches!(object.shape, Shape::Plane { .. })).collect();
+        let any_clear = scene.objects.iter().any(|object| scene.materials[object.material].transparency != 0.0);
         let palette = scene.materials.iter().map(Material::new).collect();
         let textures = scene.textures.iter().map(|texture| Arc::clone(&texture.texels)).collect();
         let lit = !scene.lights.is_empty();
         let world = lit.then(|| World::new(scene, camera.scale, view.screen_tolerance));
-        Self { camera, planes, spheres, bvh, surfaces, materials, is_plane, palette, textures, world }
+        Self { camera, planes, spheres, bvh, surfaces, materials, is_plane, any_clear, palette, textures, world }
     }
 }

@@ -28,8 +28,6 @@ pub struct World<R> {
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
     /// equal spheres: from one of them the other is at t = 0, a miss.
     pub groups: Vec<u32>,
-    /// For each object: whether others share its group.
-    pub shared: Vec<bool>,
     /// For each object: its place in `planes` or `spheres`.
     pub places: Vec<usize>,
     /// The rule H.z ≤ τ for positions.
@@ -88,7 +86,6 @@ impl<R: Real> World<R> {
             bvh: None,
             lights: scene.lights.iter().map(|light| Light::new(view, scale, light)).collect(),
             groups: Vec::with_capacity(scene.objects.len()),
-            shared: Vec::new(),
             places: vec![0; scene.objects.len()],
             highest: R::ratio(
                 &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z)) / power_of_two(scale)),
@@ -109,9 +106,6 @@ impl<R: Real> World<R> {
                 }),
             }
         }
-        let mut members = vec![0_u32; groups.count as usize];
-        world.groups.iter().for_each(|&group| members[group as usize] += 1);
-        world.shared = world.groups.iter().map(|&group| members[group as usize] > 1).collect();
         world.bvh = bvh::build(&mut world.spheres, |_| true);
         for (place, plane) in world.planes.iter().enumerate() {
             world.places[plane.object] = place;

@@ -18,8 +18,20 @@ tiled_plane floor { material grey normal 0 1 0 point 0 -0.2 0 altmaterial red di
 sphere ball { material red center 5 3 -4 radius 2 }
 ";
 
-/// The same with what is not rendered yet.
-pub(crate) const LIT: &str = "light lamp { location 4 5 1 emissivity 1 1 1 }\n";
+/// The same kind of room under two lights, with a mirror, glass, a shadow and a picture's frame.
+pub(crate) const LIT: &str = "\
+camera cam { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
+material green { ambient 0 1 0 diffuse 1 2 1 specular 0.3 }
+material glass { ambient 1 1 1 diffuse 4 1 1 transparency 0.5 specular 0.4 shininess 20 }
+material grey { ambient 1 1 1 diffuse 3 3 3 }
+plane wall { material green normal 0 0 1 point 0 0 -8 }
+tiled_plane floor { material grey normal 0 1 0 point 0 -0.2 0 altmaterial green dimension 1.5 1.5 xdir 1 0 1 }
+sphere ball { material glass center 5 3 -4 radius 2 }
+sphere stone { material grey center 2 1 -3 radius 0.7 }
+fplane frame { material grey normal 0 0 1 point 1 3.5 -6 xdir 1 0 0 dimensions 2 1.5 }
+light lamp { location 4 5.5 1 emissivity 3 3 3 }
+spotlight spot { location 0 5 -1 emissivity 3 2 1 point 4 1 -4 theta 25 }
+";
 
 /// A folder of its own, with a scene in it, in which the program runs.
 pub(crate) struct Desk {

@@ -1,6 +1,6 @@
 //! Bad scenes: what is said, where, with which exit code, and that nothing is left behind.
 
-use super::desk::{Desk, LIT, ROOM};
+use super::desk::{Desk, ROOM};
 
 #[test]
 fn errors_name_their_place_and_leave_nothing() {
@@ -21,22 +21,6 @@ fn errors_name_their_place_and_leave_nothing() {
         .fails_with(&["plumb: error: none.txt: there is no such file"]);
     desk.run(&["render", "."]).fails_with(&["directory"]);
     assert_eq!(desk.names(), ["bad.txt", "room.txt"]);
-}
-
-#[test]
-fn what_is_not_rendered_yet_says_so() {
-    let desk = Desk::new();
-    desk.write("lit.txt", &(ROOM.to_owned() + LIT));
-    let words = ["plumb: error: lit.txt: not rendered yet", "lamp"];
-    desk.run(&["render", "lit.txt"]).fails_with(&words);
-    desk.run(&["render", "lit.txt", "-o", "-"])
-        .fails_with(&words);
-    desk.run(&["probe", "lit.txt", "0", "0"]).fails_with(&words);
-    assert_eq!(
-        desk.run(&["check", "lit.txt"]).ends(0).text(),
-        "lit.txt: ok (3 objects, 1 light, 40×30)\n"
-    );
-    assert_eq!(desk.names(), ["lit.txt", "room.txt"]);
 }
 
 #[test]

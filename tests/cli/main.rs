@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod bad_light;
 mod basics;
 mod desk;
 mod endings;
 mod errors;
 mod gpu;
 mod inspect;
+mod lit;
 mod options;
