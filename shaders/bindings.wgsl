@@ -1,4 +1,4 @@
-// What the host hands over. Struct offsets are those of src/gpu/pack.rs; a test compares them.
+// What the host hands over. Struct offsets are those of src/gpu/pack/records.rs; a test compares them.
 
 // The rectangle of pixels that this dispatch makes: column and row of its top left pixel, columns and rows.
 struct Job {

@@ -39,7 +39,7 @@ fn small_sphere_hits(sphere: SmallSphere, ray: Ray) -> f32 {
 //#end
 //#if small_sphere_point
 
-// H − C at the nearer hit: s·U + (s/s_c − 1)·C, U = W − W_c; see the twin for why nothing cancels.
+// H − C at the nearer hit: s·U + (s/s_c − 1)·C, U = W − W_c; see the twin.
 fn small_sphere_from_center(sphere: SmallSphere, ray: Ray, inverse: f32) -> vec3f {
     let offset = small_sphere_offset(sphere, ray);
     let disc = max(small_sphere_disc(sphere, ray), 0.0);

@@ -163,7 +163,7 @@ struct SpherePoint {
 //#if color_wheel
 
 // (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)), θ the angle of (x, y) from +x; θ = 0 at the origin.
-// By 1 + cos 2α = 2·cos²α: no acos, no cos, and nothing cancels.
+// By 1 + cos 2α = 2·cos²α: no acos, no cos, and never less than 0.
 fn color_wheel(x: f32, y: f32) -> vec3f {
     let larger = max(abs(x), abs(y));
     if !(larger > 0.0) {

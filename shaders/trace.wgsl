@@ -188,6 +188,13 @@ struct Traced {
 // Traces a primary ray.
 fn ray_trace(ray: Ray) -> Traced {
     var traced: Traced;
+//#if counted
+    steps += PRIMARY_STEPS;
+    if steps > STEPS_LIMIT {
+        traced.verdict = UNDECIDED;
+        return traced;
+    }
+//#end
     let hit = find_closest_object(ray);
 //#if bvh
     if !hit.decided {
@@ -208,8 +215,9 @@ fn ray_trace(ray: Ray) -> Traced {
     var waiting = 0u;
 //#end
 //#if branches
-    for (var rays = 1u; ; rays += 1u) {
-        if rays > MAX_RAYS || steps > STEPS_LIMIT {
+    var rays = 1u;
+    loop {
+        if steps > STEPS_LIMIT {
             traced.verdict = UNDECIDED;
             break;
         }
@@ -251,11 +259,17 @@ fn ray_trace(ray: Ray) -> Traced {
             waiting += 1u;
         }
         var met = Met(0.0, NOTHING);
-        while waiting > 0u && met.object == NOTHING {
+        while waiting > 0u && met.object == NOTHING && rays < MAX_RAYS {
             steps += 1u;
+            rays += 1u;
             waiting -= 1u;
             branch = stack[waiting];
             met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX));
+        }
+        if met.object == NOTHING && waiting > 0u {
+            // More rays than allowed: the CPU says which pixel it is.
+            traced.verdict = UNDECIDED;
+            break;
         }
 //#else
 //#if mirror
@@ -266,6 +280,11 @@ fn ray_trace(ray: Ray) -> Traced {
         if total > MAX_PATH || !any(branch.weight > vec3f(0.0)) {
             break;
         }
+        if rays == MAX_RAYS {
+            traced.verdict = UNDECIDED;
+            break;
+        }
+        rays += 1u;
         let met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX));
 //#end
         if met.object == NOTHING {
@@ -297,11 +316,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if samples
     var traced: Traced;
     for (var sample = 0u; sample < SAMPLES; sample += 1u) {
-        steps += 1u + PRIMARY_STEPS;
-        if steps > STEPS_LIMIT {
-            traced.verdict = UNDECIDED;
-            break;
-        }
+        steps += 1u;
 //#if course
         let offset = offsets[place * SAMPLES + sample];
 //#else
@@ -310,6 +325,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let one = ray_trace(camera_getdir(pixel, offset));
         traced.color += one.color / f32(SAMPLES);
         traced.verdict |= one.verdict;
+        if traced.verdict != 0u {
+            break;
+        }
     }
 //#else
     let traced = ray_trace(camera_getdir(pixel));

@@ -1,4 +1,6 @@
-//! Numbers for people to read, as `plumb probe` prints them.
+//! Numbers and lines for people to read, as `plumb probe` prints them.
+
+use std::io::{self, Write};
 
 use plumb::real::V3;
 
@@ -32,6 +34,11 @@ pub(crate) fn short_triple(v: [f64; 3]) -> String {
 /// The components of a vector.
 pub(crate) fn components(v: V3<f64>) -> [f64; 3] {
     [v.x, v.y, v.z]
+}
+
+/// A line with its heading.
+pub(crate) fn line(to: &mut dyn Write, what: &str, value: String) -> io::Result<()> {
+    writeln!(to, "{what:<13}{value}")
 }
 
 /// C's `%.Ng` less trailing zeros, and never "-0".

@@ -15,6 +15,7 @@ mod probe;
 mod progress;
 mod render;
 mod say;
+mod sight;
 mod source;
 mod tree;
 mod why;
@@ -55,6 +56,7 @@ EXAMPLES
   plumb render scenes/notes/walls.txt   a picture, walls.ppm, in this folder
   plumb render scene.txt -o out.png --size 1920x1080
   plumb < scene.txt > picture.ppm       the notes' own usage
+  plumb render scene.txt --samples 16   smooth edges
   plumb check scenes/*/*.txt            every error of every file
   plumb probe scene.txt 100 40          why a pixel is what it is (y upwards)
   plumb compare a.ppm b.png             are they the same, and if not, where?
@@ -69,6 +71,11 @@ THE SCENE LANGUAGE
       material green { ambient 0 5 0 }
       plane    wall  { material green   normal 3 0 1   point 0 0 0 }
       sphere   ball  { material green   center 4 2 -5   radius 2 }
+      light    lamp  { location 4 6 2   emissivity 2 2 2 }
+
+  Without lights a colour is the material's ambient reflectivity over the
+  distance. With lights there are diffuse light, shadows and glints, mirror
+  images (specular), and what is seen through things (transparency).
 
   Types: camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane,
   light, spotlight, texture, texplane. A material is defined before it is used;
@@ -116,7 +123,7 @@ enum Command {
     Check(check::Args),
     /// Print what a scene becomes on its way to the GPU
     Dump(dump::Args),
-    /// Explain one pixel: its ray, what every object answered, its colour
+    /// Explain one pixel: its rays, what they met, what the lights add, its colour
     Probe(probe::Args),
     /// Compare two pictures; exit 1 if they differ
     Compare(compare::Args),

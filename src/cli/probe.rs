@@ -1,16 +1,12 @@
 //! `plumb probe`: one pixel explained, from its rays to its bytes, by the reference tracer in f64.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use anyhow::{Result, anyhow, bail};
-use plumb::cpu::camera::{Ray, camera_getdir, camera_setpix, inverse_distance};
-use plumb::cpu::debug::hit_point;
+use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::pixel::{Jitter, Sampling, Stages};
-use plumb::cpu::plane::plane_hits;
-use plumb::cpu::sphere::sphere_hits;
-use plumb::cpu::trace::{Fault, Hit, Limits, Traced, Unwatched, ray_trace};
+use plumb::cpu::trace::{Fault, Limits, Traced, Unwatched, ray_trace};
 use plumb::jitter;
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Undecided, V3};
@@ -18,50 +14,56 @@ use plumb::render::PixelFault;
 use plumb::scene::Scene;
 
 use super::args::PictureOptions;
-use super::digits::{components, full, short, triple};
+use super::digits::{components, line, short, triple};
+use super::sight::Sight;
 use super::tree::Tree;
-use super::why::{ExactRay, Verdict};
 use super::{Answer, say, source};
 
-/// With more objects than this only hits are listed.
-const LISTED: usize = 50;
 /// More samples than this are only counted.
 const SHOWN_SAMPLES: usize = 200;
+
+const HOW_TO_READ: &str = "\
+EXAMPLES
+  plumb probe scene.txt 100 40                the pixel in column 100, row 40
+  plumb probe scene.txt 100 40 --samples 16   its samples, and their mean
+  plumb probe scene.txt 100 40 --samples 16 --sample 3
+                                              and the rays of one of them
+
+HOW TO READ IT
+  Give the options that the picture was rendered with: the last line is its
+  bytes. All else is what the CPU's reference tracer has in f64.
+
+  objects  What every object answered to the ray from the viewpoint; the closest
+           hit is marked *. Why an object is missed is found in exact arithmetic;
+           where that disagrees with f64 it says so.
+
+  rays     In a scene with lights: every ray, below the one that it comes from.
+           `primary` left the viewpoint, `through 3` went straight through what
+           ray 3 met, `mirror in 3` is the mirror image seen there. Of each: what
+           it met and where, at which distance t; its weight, which is how much
+           it counts; the path, the sum of the distances up to there; the ambient
+           reflectivity. Then what each light adds
+
+             diffuse  reflectivity ∘ emissivity ∘ filter · cosine / distance
+             glint    the highlight, where there is one
+             filter   the share of light that comes through transparent things
+
+           or why it adds nothing. With all that the ray adds to the colour
+
+             weight ∘ (ambient + diffuse + glint) · (1 − transparency) / path
+
+           where ∘ is channel by channel. Numbers there have nine digits, which
+           tell an f32 from its neighbours.
+
+  colour   The sum of what the rays add, or the mean of the samples; 1 is full
+           brightness. Then 255 times that; then the bytes, which are cut off,
+           not rounded.";
 
 /// What `plumb probe` takes.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "See `plumb probe --help` for how to read the answer.",
-    after_long_help = "\
-EXAMPLES
-  plumb probe scene.txt 100 40           the pixel 100 from the left, 40 from the bottom
-  plumb probe scene.txt 100 40 --samples 16             its samples and their mean
-  plumb probe scene.txt 100 40 --samples 16 --sample 3  and the rays of one of them
-
-HOW TO READ IT
-  Give the options that the picture was rendered with: the last line is its bytes. All else is what the CPU's
-  reference tracer has in f64.
-
-  objects   What every object answered to the ray from the viewpoint; the closest hit is marked *. Why an object is
-            missed is found in exact arithmetic; where that disagrees with f64 it says so.
-
-  rays      In a scene with lights: every ray, each below the one that it comes from. `primary` left the viewpoint,
-            `through 3` went straight through what ray 3 met, `mirror in 3` is the mirror image seen there. Of each:
-            what it met, where, and at which distance t; its weight, which is what its colour counts for; the path,
-            which is the sum of the distances so far; the ambient reflectivity there; and for each light
-
-              diffuse  what the light adds: diffuse reflectivity ∘ its emissivity ∘ filter · cosine / distance
-              glint    the highlight, if there is one
-              filter   the share of light that comes through transparent objects in between, if there are any
-
-            or why it adds nothing. Then the ray adds to the colour
-
-              weight ∘ (ambient + all diffuse + all glints) · (1 − transparency) / path
-
-            (∘ is channel by channel). Numbers in the tree have nine digits, which tell an f32 from its neighbours.
-
-  colour    The sum of what the rays add, or the mean of the samples; 1 is full brightness. Then 255 times that, and
-            the bytes: cut off, not rounded."
+    after_long_help = HOW_TO_READ
 )]
 pub(crate) struct Args {
     /// The scene file; `-` is stdin
@@ -284,21 +286,9 @@ impl<'a> Probe<'a> {
     /// Shows all about one sample, and returns its colour.
     fn one(&self, [a, b]: [f64; 2], to: &mut dyn Write) -> io::Result<Result<V3<f64>, Fault>> {
         let (x, y) = (f64::from(self.x) + a, f64::from(self.y) + b);
-        let ray = camera_getdir(&self.prepared.camera, x, y);
-        let sight = Sight {
-            probe: self,
-            exact: ExactRay::new(&self.scene.camera, x, y),
-            ray,
-        };
-        let length = ray.w2.sqrt();
-        let direction = ray.w.approx().to_array().map(|w| w / length);
-        line(to, "world point", triple(sight.exact.world_point()))?;
-        line(
-            to,
-            "ray from",
-            triple(self.scene.camera.viewpoint.to_array()),
-        )?;
-        line(to, "direction", triple(direction))?;
+        let tolerance = self.picture.screen_tolerance;
+        let sight = Sight::new(self.scene, &self.prepared, tolerance, [x, y]);
+        sight.ray(to)?;
         // The primary ray is traced once for what it hits, and once more for the tree, whose rays may be too many.
         let first = Limits {
             max_path: 0.0,
@@ -308,7 +298,7 @@ impl<'a> Probe<'a> {
             Ok(traced) => traced,
             Err(fault) => return Ok(Err(fault)),
         };
-        let objects = match sight.objects(&traced) {
+        let objects = match sight.objects(&traced, self.all) {
             Ok(text) => text,
             Err(undecided) => return Ok(Err(undecided.into())),
         };
@@ -331,130 +321,6 @@ impl<'a> Probe<'a> {
         tree.finish()?;
         Ok(traced.map(|traced| traced.color))
     }
-}
-
-/// A ray from the viewpoint, as the tracer has it and as it is exactly.
-struct Sight<'a> {
-    probe: &'a Probe<'a>,
-    ray: Ray<f64>,
-    exact: ExactRay,
-}
-
-impl Sight<'_> {
-    /// What every object answered, in the order of the file.
-    fn objects(&self, traced: &Traced<f64>) -> Result<String, Undecided> {
-        let Probe {
-            scene,
-            prepared,
-            picture,
-            all,
-            ..
-        } = self.probe;
-        let mut text = String::new();
-        let hits = self.hits()?;
-        let objects = &scene.objects;
-        let with_misses = *all || objects.len() <= LISTED;
-        let widest = |width: fn(&plumb::scene::Object) -> usize| {
-            objects.iter().map(width).max().unwrap_or(0).min(24)
-        };
-        let (names, entities) = (
-            widest(|object| object.name.chars().count()),
-            widest(|object| object.entity().len()),
-        );
-        let closest = traced.hit.map(|hit| hit.object);
-        let missed = hits.iter().filter(|hit| hit.is_none()).count();
-        let _ = writeln!(
-            text,
-            "objects      {}, {} hit",
-            objects.len(),
-            objects.len() - missed
-        );
-        for (index, (object, hit)) in objects.iter().zip(&hits).enumerate() {
-            if hit.is_none() && !with_misses {
-                continue;
-            }
-            let mark = if closest == Some(index) { "*" } else { " " };
-            let _ = write!(
-                text,
-                "  {mark} {:<names$}  {:<entities$}  ",
-                object.name,
-                object.entity()
-            );
-            let verdict = self.exact.ask(scene, index, picture.screen_tolerance);
-            let _ = match (hit, verdict) {
-                (Some(hit), verdict) => {
-                    let point = hit_point(scene, prepared, traced, hit);
-                    let t = 1.0 / inverse_distance(&prepared.camera, &self.ray, hit.inverse);
-                    let doubt = match verdict {
-                        Verdict::Hit => String::new(),
-                        Verdict::Miss(reason) => format!(" (in f64; exactly: miss, {reason})"),
-                    };
-                    writeln!(
-                        text,
-                        "hit   t = {}, at {}{doubt}",
-                        full(t),
-                        triple(point.to_array())
-                    )
-                }
-                (None, Verdict::Miss(reason)) => writeln!(text, "miss  {reason}"),
-                (None, Verdict::Hit) => writeln!(
-                    text,
-                    "miss  (in f64; exactly: hit, by less than f64 can tell)"
-                ),
-            };
-        }
-        if missed > 0 && !with_misses {
-            let _ = writeln!(text, "    misses not listed: {missed} (--all lists them)");
-        }
-        Ok(text)
-    }
-
-    /// The hit of every object, or none.
-    fn hits(&self) -> Result<Vec<Option<Hit<f64>>>, Undecided> {
-        let mut hits = vec![None; self.probe.scene.objects.len()];
-        for (index, plane) in self.probe.prepared.planes.iter().enumerate() {
-            let inverse = plane_hits(plane, &self.ray)?;
-            hits[plane.object] = inverse.map(|inverse| Hit {
-                inverse,
-                object: plane.object,
-                index,
-            });
-        }
-        for (index, sphere) in self.probe.prepared.spheres.iter().enumerate() {
-            let inverse = sphere_hits(&self.probe.prepared.camera, sphere, &self.ray)?;
-            hits[sphere.object] = inverse.map(|inverse| Hit {
-                inverse,
-                object: sphere.object,
-                index,
-            });
-        }
-        Ok(hits)
-    }
-
-    /// What the ray hits first.
-    fn closest(&self, traced: &Traced<f64>, to: &mut dyn Write) -> io::Result<()> {
-        let Probe {
-            scene, prepared, ..
-        } = self.probe;
-        let Some(hit) = &traced.hit else {
-            return line(to, "hit", "nothing".to_owned());
-        };
-        let object = &scene.objects[hit.object];
-        let point = hit_point(scene, prepared, traced, hit);
-        let t = 1.0 / inverse_distance(&prepared.camera, &self.ray, hit.inverse);
-        line(
-            to,
-            "hit",
-            format!("{} at {}", object.name, triple(point.to_array())),
-        )?;
-        line(to, "ambient", triple(components(traced.ambient)))?;
-        line(to, "path length", full(t))
-    }
-}
-
-/// A line with its heading.
-fn line(to: &mut dyn Write, what: &str, value: String) -> io::Result<()> {
-    writeln!(to, "{what:<13}{value}")
 }
 
 /// Where in its pixel a sample is.

@@ -258,7 +258,8 @@ impl Watch<f64> for Tree<'_> {
         let lights = &self.scene.lights;
         let few = self.all || lights.len() <= SHOWN_LIGHTS;
         let does = matches!(lit, Lit::Lit { .. });
-        if !few && !(does && self.lights.listed < SHOWN_LIGHTS) {
+        let listed = few || (does && self.lights.listed < SHOWN_LIGHTS);
+        if !listed {
             let counts = &mut self.lights;
             *match lit {
                 Lit::AtLight => &mut counts.at_light,

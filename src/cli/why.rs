@@ -236,14 +236,14 @@ mod tests {
             rectangle("point 0 0 -3 xdir 1 1 0 dimensions 1.414213562373095 1"),
         ];
         let outside = |side, at, length| Verdict::Miss(Reason::Outside { side, at, length });
-        let root = 2.0_f64.sqrt();
+        let root = std::f64::consts::SQRT_2;
         let expected = [
             Verdict::Hit,
             outside(0, 1.0, 0.75),
             outside(1, 1.0, 0.999_999_999_999_999_9),
             outside(1, -1.0, 1.0),
             Verdict::Hit,
-            outside(0, root, 1.414_213_562_373_095),
+            outside(0, 98.0 / 4802.0_f64.sqrt(), root.next_down()),
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
     }

@@ -116,7 +116,7 @@ fn texel<R: Real>(scene: &Prepared<R>, textured: &Textured<R>, position: V3<R>) 
 
 /// (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)) with θ the angle of (x, y) from +x; θ = 0 at the origin.
 ///
-/// By 1 + cos 2α = 2·cos²α: no acos, no cos, and nothing cancels.
+/// By 1 + cos 2α = 2·cos²α: no acos, no cos, and never less than 0.
 pub fn color_wheel<R: Real>(x: R, y: R) -> Result<V3<R>, Undecided> {
     // The larger component becomes ±1, so that squares neither overflow nor vanish.
     let (ax, ay) = (x.abs()?, y.abs()?);

@@ -74,13 +74,13 @@ pub fn hits_from<R: Real>(
         if range.skip == Some(world.groups[plane.object]) || ends_at(range, &plane.level) {
             continue;
         }
-        if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)? {
-            if before_light(t)? {
-                let zero = V3::new(R::zero(), R::zero(), R::zero());
-                reach = take(Met { t, point: Point { object: plane.object, position, from_center: zero } })?;
-                if reach < 0.0 {
-                    return Ok(());
-                }
+        if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)?
+            && before_light(t)?
+        {
+            let zero = V3::new(R::zero(), R::zero(), R::zero());
+            reach = take(Met { t, point: Point { object: plane.object, position, from_center: zero } })?;
+            if reach < 0.0 {
+                return Ok(());
             }
         }
     }
@@ -94,14 +94,14 @@ pub fn hits_from<R: Real>(
             Some(light) if sphere.level.binary_search(&light.number).is_ok() => !entry(light.number)?,
             _ => false,
         };
-        if !skipped && !at_light && reach >= 0.0 {
-            if let Some(t) = sphere_hits_from(sphere, base, dir)? {
-                if before_light(t)? {
-                    let position = base + dir * t;
-                    let from_center = position - sphere.center;
-                    reach = take(Met { t, point: Point { object: sphere.object, position, from_center } })?;
-                }
-            }
+        let asked = !skipped && !at_light && reach >= 0.0;
+        if asked
+            && let Some(t) = sphere_hits_from(sphere, base, dir)?
+            && before_light(t)?
+        {
+            let position = base + dir * t;
+            let from_center = position - sphere.center;
+            reach = take(Met { t, point: Point { object: sphere.object, position, from_center } })?;
         }
         Ok(reach)
     };

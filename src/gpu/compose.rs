@@ -100,7 +100,7 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
     // The last round of each of up to four loops only finds its end.
-    count("samples", "PRIMARY_STEPS", if features.unrolled { 0 } else { packed.loop_iterations() + 4 });
+    count("counted", "PRIMARY_STEPS", if features.unrolled { 0 } else { packed.loop_iterations() + 4 });
     if let Some(lit) = &packed.lit {
         count("lit", "LIGHTS", lit.lights.len());
         // The last round of either loop only finds its end.

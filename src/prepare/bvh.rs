@@ -40,8 +40,8 @@ pub struct Node {
 /// From this many spheres on a tree is quicker than asking every one (docs/BENCH.md).
 pub const WORTHWHILE: usize = 48;
 
-/// A box is widened by this share of its corners' coordinates. A slab test has three roundings of at most 2.5 ulp
-/// (2⁻²¹·⁷ of the coordinate each); 2⁻¹⁹ is more than the three together.
+/// A box is widened by this share of its corners' coordinates: what its own rounding to f32 and a hit point's may be off.
+/// The slab test's roundings are relative to the distance, and covered by the slack of the test.
 const PAD: f64 = 1.0 / 524_288.0;
 
 /// Coordinates beyond this would overflow an f32 when areas are compared; such spheres stay outside the tree.

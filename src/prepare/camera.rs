@@ -64,5 +64,6 @@ pub fn origin(pixels: u32, world: f64) -> Ratio {
 
 /// The exponent of the power of two next below `z` > 0.
 pub fn exponent(z: f64) -> i32 {
-    if z.is_normal() { ((z.to_bits() >> 52) & 0x7ff) as i32 - 1023 } else { -1022 }
+    // Within what `two_to` can invert.
+    if z.is_normal() { (((z.to_bits() >> 52) & 0x7ff) as i32 - 1023).min(1022) } else { -1022 }
 }

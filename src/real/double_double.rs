@@ -175,6 +175,10 @@ impl Real for DoubleDouble {
 
     #[inline]
     fn floor(self) -> Result<f64, Undecided> {
+        if self.hi.abs() >= 1.0 / f64::EPSILON {
+            // hi is an integer, and its sum with lo's floor need not be an f64.
+            return Ok(self.hi + self.lo.floor());
+        }
         let nearest = self.hi.round();
         let above = (self.hi - nearest) + self.lo;
         let below = above < 0.0 && !(self.fine && -above <= self.error);
