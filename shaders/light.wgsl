@@ -19,8 +19,8 @@ fn shadow(point: Point, d: vec3f, distance: f32, number: u32) -> vec3f {
     var filter_ = vec3f(1.0);
     var range = Range(point.group, bit, 0.0, distance);
     loop {
-        let met = closest_from(point.position, d, range);
-        steps += 2u;
+        let met = closest_from(point.position, d, range, LANES);
+        steps += 2u * LANES;
         if met.object == NOTHING || steps > STEPS_LIMIT {
             return filter_;
         }

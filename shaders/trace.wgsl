@@ -2,8 +2,9 @@
 
 //#if counted
 // Iterations of the loops so far, of all samples, the last one of each, which only finds the end, included: the driver may
-// end loops early that go round too often (lavapipe counts 65,535 for all loops of an invocation together), so a pixel
-// that comes near is handed to the CPU.
+// end loops early that go round too often (lavapipe counts 65,535 for all loops together, and for all invocations that it
+// runs as the lanes of one vector), so a pixel that comes near is handed to the CPU. Loops that go round differently in
+// different lanes count for all LANES.
 var<private> steps: u32;
 const STEPS_LIMIT = 50000u;
 //#end
@@ -61,7 +62,7 @@ fn find_closest_object(ray: Ray) -> Hit {
     var walk = bvh_begin(vec3f(0.0), ray.w);
     loop {
         let node = bvh[walk.index];
-        steps += 2u + node.count;
+        steps += LANES * (2u + node.count);
         if steps > STEPS_LIMIT {
             break;
         }
@@ -77,7 +78,7 @@ fn find_closest_object(ray: Ray) -> Hit {
 //#if world_bvh
     // In a lit scene one tree serves all rays.
     let length = sqrt(ray.w2);
-    let met = closest_from(vec3f(0.0), ray.w / length, Range(NOTHING, 0u, 0.0, T_MAX));
+    let met = closest_from(vec3f(0.0), ray.w / length, Range(NOTHING, 0u, 0.0, T_MAX), 1u);
     if met.object != NOTHING {
         nearer(&closest, length / met.t, met.object);
     }
@@ -152,7 +153,7 @@ fn shade(point: Point, base: vec3f) -> vec3f {
     let diffuse = getdiff(point);
     steps += 1u;
     for (var i = 0u; i < LIGHTS; i += 1u) {
-        steps += 1u;
+        steps += 1u + SHADOW_STEPS;
         if steps > STEPS_LIMIT {
             break;
         }
@@ -260,11 +261,11 @@ fn ray_trace(ray: Ray) -> Traced {
         }
         var met = Met(0.0, NOTHING);
         while waiting > 0u && met.object == NOTHING && rays < MAX_RAYS {
-            steps += 1u;
+            steps += 2u * LANES;
             rays += 1u;
             waiting -= 1u;
             branch = stack[waiting];
-            met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX));
+            met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX), LANES);
         }
         if met.object == NOTHING && waiting > 0u {
             // More rays than allowed: the CPU says which pixel it is.
@@ -285,7 +286,7 @@ fn ray_trace(ray: Ray) -> Traced {
             break;
         }
         rays += 1u;
-        let met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX));
+        let met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX), 1u);
 //#end
         if met.object == NOTHING {
             break;

@@ -29,12 +29,13 @@ fn met_nearer(closest: ptr<function, Met>, t: f32, object: u32) {
     }
 }
 
-// The first object that the ray from `base` along the unit vector `dir` meets in range.
-fn closest_from(base: vec3f, dir: vec3f, range: Range) -> Met {
+// The first object that the ray from `base` along the unit vector `dir` meets in range. The rounds of its loops count
+// `weight` times: 1 where all lanes of a vector ask together, LANES where they ask on their own.
+fn closest_from(base: vec3f, dir: vec3f, range: Range, weight: u32) -> Met {
     var closest = Met(range.limit, NOTHING);
 //#insert unrolled_closest
 //#if world_loop
-    steps += WORLD_STEPS;
+    steps += weight * WORLD_STEPS;
     if steps > STEPS_LIMIT {
         return closest;
     }
@@ -53,7 +54,7 @@ fn closest_from(base: vec3f, dir: vec3f, range: Range) -> Met {
     var walk = bvh_begin(base, dir);
     loop {
         let node = bvh[walk.index];
-        steps += 2u + node.count;
+        steps += LANES * (2u + node.count);
         if steps > STEPS_LIMIT {
             break;
         }
@@ -74,7 +75,7 @@ fn anything_from(base: vec3f, dir: vec3f, range: Range) -> bool {
     var hit = false;
 //#insert unrolled_any
 //#if world_loop
-    steps += WORLD_STEPS;
+    // The rounds are counted where the lights are gone through, as lanes ask for different ones.
     if steps > STEPS_LIMIT {
         return true;
     }
@@ -96,7 +97,7 @@ fn anything_from(base: vec3f, dir: vec3f, range: Range) -> bool {
     var walk = bvh_begin(base, dir);
     loop {
         let node = bvh[walk.index];
-        steps += 2u + node.count;
+        steps += LANES * (2u + node.count);
         if steps > STEPS_LIMIT {
             return true;
         }

@@ -178,7 +178,7 @@ fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
         ..Settings::default()
     };
     let packed = Packed::new(&Prepared::new(&scene, View::new(0.0, settings.samples)));
-    let features = FeatureSet::new(&packed, &settings);
+    let features = FeatureSet::new(&packed, &settings, 8);
     (compose(&packed, &features), features)
 }
 
@@ -234,7 +234,7 @@ fn every_scene_of_ours_is_valid() {
         for (values, samples) in [(false, 1), (true, 16)] {
             let settings = Settings { values, samples, ..Settings::default() };
             let packed = Packed::new(&Prepared::new(&common::read(&path), View::new(0.0, samples)));
-            let features = FeatureSet::new(&packed, &settings);
+            let features = FeatureSet::new(&packed, &settings, 8);
             assert_valid(&compose(&packed, &features), &path.display().to_string());
         }
     }

@@ -433,7 +433,7 @@ mod pixel_to_ray {
     /// The shader that plumb composes for the scene, and a second entry point that calls its camera.
     fn composed(scene: &Scene) -> String {
         let packed = Packed::new(&Prepared::new(scene, 0.0));
-        let mut wgsl = compose(&packed, &FeatureSet::new(&packed, &Settings::default()));
+        let mut wgsl = compose(&packed, &FeatureSet::new(&packed, &Settings::default(), 8));
         wgsl += "
 @group(0) @binding(100) var<storage, read> test_pixels: array<vec2i>;
 @group(0) @binding(101) var<storage, read_write> test_rays: array<vec4f>;

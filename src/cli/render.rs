@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow, bail};
 use plumb::cpu::debug::list_pixels;
+use plumb::cpu::pixel::Stages;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, PixelFault, Report, Settings};
@@ -278,6 +279,7 @@ impl<'a> Job<'a> {
         let listed = list_pixels(
             &self.scene,
             &prepared,
+            &Stages::new(&self.scene, settings.screen_tolerance.into()),
             &limits,
             start..end,
             shown,

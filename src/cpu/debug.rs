@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::camera::camera_setpix;
+use super::pixel::{Sampling, Stages};
 use super::sphere::sphere_from_center;
 use super::trace::{Fault, Hit, Limits, Traced, Unwatched, ray_trace};
 use crate::prepare::Prepared;
@@ -46,6 +46,7 @@ pub struct Shown {
 pub fn list_pixels(
     scene: &Scene,
     prepared: &Prepared<f64>,
+    stages: &Stages<'_>,
     limits: &Limits,
     rows: Range<u32>,
     shown: Shown,
@@ -72,7 +73,7 @@ pub fn list_pixels(
                 write!(to, "{name:<12} DRGB:{}", triple(traced.color.approx(), 2))?;
             }
             if shown.irgb {
-                let [r, g, b] = camera_setpix(traced.color).map_err(|undecided| fault(undecided.into()))?;
+                let (_, [r, g, b]) = stages.trace(limits, Sampling::Once, x, y).map_err(io::Error::other)?;
                 write!(to, " IRGB:({r:5}, {g:5}, {b:5})")?;
             }
             if shown.offset {

@@ -85,13 +85,14 @@ impl Jitter {
 }
 
 /// The scene on the CPU, in as many number types as it takes: f64 with error bounds decides nearly every pixel; where it
-/// cannot, pairs of f64 do.
+/// cannot, pairs of f64 do; and plain f64 where those overflow.
 #[derive(Debug)]
 pub struct Stages<'a> {
     scene: &'a Scene,
     view: View,
     bounded: Prepared<Bounded>,
     pairs: OnceLock<Prepared<DoubleDouble>>,
+    plain: OnceLock<Prepared<f64>>,
 }
 
 /// Value and bytes of a pixel.
@@ -100,7 +101,7 @@ pub type Pixel = ([f32; 3], [u8; 3]);
 impl<'a> Stages<'a> {
     /// Prepares the scene.
     pub fn new(scene: &'a Scene, view: View) -> Self {
-        Self { scene, view, bounded: Prepared::new(scene, view), pairs: OnceLock::new() }
+        Self { scene, view, bounded: Prepared::new(scene, view), pairs: OnceLock::new(), plain: OnceLock::new() }
     }
 
     /// Value and bytes of pixel (x, y).
@@ -112,9 +113,16 @@ impl<'a> Stages<'a> {
                 attempt(pairs, limits, sampling, x, y)
             }
         });
+        let pixel = pixel.or_else(|fault| match fault {
+            Fault::TooManyRays => Err(fault),
+            Fault::Undecided => {
+                let plain = self.plain.get_or_init(|| Prepared::new(self.scene, self.view));
+                attempt(plain, limits, sampling, x, y)
+            }
+        });
         match pixel {
             Ok(pixel) => Ok(pixel),
-            // Only where numbers overflow: such a pixel stays black.
+            // Not a number even so: such a pixel stays black.
             Err(Fault::Undecided) => Ok(([0.0; 3], [0; 3])),
             Err(Fault::TooManyRays) => Err(PixelFault { x, y, max_rays: limits.max_rays }),
         }

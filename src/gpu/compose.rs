@@ -100,11 +100,14 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
     // The last round of each of up to four loops only finds its end.
+    count("counted", "LANES", features.lanes as usize);
     count("counted", "PRIMARY_STEPS", if features.unrolled { 0 } else { packed.loop_iterations() + 4 });
     if let Some(lit) = &packed.lit {
         count("lit", "LIGHTS", lit.lights.len());
         // The last round of either loop only finds its end.
         count("world_loop", "WORLD_STEPS", lit.loop_iterations() + 2);
+        let in_shadows = names.contains("world_loop") && names.contains("any_hit");
+        count("lit", "SHADOW_STEPS", if in_shadows { lit.loop_iterations() + 2 } else { 0 });
         count("world_plane_loop", "WORLD_PLANES", lit.planes.len());
         count("world_sphere_loop", "WORLD_TREE", lit.in_tree);
         count("world_sphere_loop", "WORLD_SPHERES", lit.spheres.len());
@@ -124,7 +127,8 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     lines.join("\n") + "\n"
 }
 
-/// lavapipe ends every loop of an invocation, without a word, once they have gone round 65,535 times together.
+/// lavapipe ends every loop, without a word, once the loops of an invocation have gone round 65,535 times together; and
+/// counts for all invocations that are lanes of one vector, as long as any of them goes round.
 const LOOP_LIMIT: usize = 65_535;
 
 /// Most iterations of the loops outside the tree, for one primary ray. The shader counts those of the others.

@@ -6,12 +6,13 @@ use super::compose::compose;
 use super::features::FeatureSet;
 use super::pack::Packed;
 use crate::prepare::{Prepared, View};
+use super::device::SOFTWARE_LANES;
 use crate::render::Settings;
 use crate::scene::Scene;
 
 fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
     let packed = Packed::new(&Prepared::new(scene, View::new(settings.screen_tolerance, settings.samples)));
-    let features = FeatureSet::new(&packed, settings);
+    let features = FeatureSet::new(&packed, settings, SOFTWARE_LANES);
     (packed, features)
 }
 

@@ -19,10 +19,15 @@ pub struct Gpu {
     pub name: String,
     /// Whether kernels can be timed on the device.
     pub timestamps: bool,
+    /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
+    pub lanes: u32,
     /// Seconds that loading the driver took, and opening the device.
     pub seconds: [f64; 2],
     trouble: Arc<Mutex<Trouble>>,
 }
+
+/// Lanes of a software driver's vectors, 256 bits wide as a rule.
+pub const SOFTWARE_LANES: u32 = 8;
 
 /// What went wrong behind our back: wgpu reports some errors by callback.
 #[derive(Debug, Default)]
@@ -84,7 +89,9 @@ pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
     let trouble = Arc::new(Mutex::new(Trouble::default()));
     watch(&device, &trouble);
     let device_seconds = start.elapsed().as_secs_f64();
-    Ok(Gpu { device, queue, name, timestamps, seconds: [instance_seconds, device_seconds], trouble })
+    let software = info.device_type == wgpu::DeviceType::Cpu;
+    let lanes = if software { info.subgroup_max_size.max(SOFTWARE_LANES) } else { 1 };
+    Ok(Gpu { device, queue, name, timestamps, lanes, seconds: [instance_seconds, device_seconds], trouble })
 }
 
 /// Notes what wgpu reports by callback, where it would panic otherwise.

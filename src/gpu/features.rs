@@ -31,6 +31,8 @@ pub struct FeatureSet {
     pub samples: u32,
     /// The samples are spread as the course's program did.
     pub course: bool,
+    /// Invocations that share a driver's limit on loops; 1 where there is none.
+    pub lanes: u32,
     /// There are lights.
     pub lit: Option<LitFeatures>,
 }
@@ -67,8 +69,9 @@ pub struct LitFeatures {
 pub const UNROLLED_OBJECTS: usize = 32;
 
 impl FeatureSet {
-    /// The features of a packed scene, rendered as the settings say.
-    pub fn new(packed: &Packed, settings: &Settings) -> Self {
+    /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a limit on
+    /// loops (see [`Gpu::lanes`](super::device::Gpu::lanes)).
+    pub fn new(packed: &Packed, settings: &Settings, lanes: u32) -> Self {
         let tree = !packed.bvh.is_empty();
         let objects = packed.lit.as_ref().map_or(packed.tested(), |lit| lit.planes.len() + lit.spheres.len());
         let fronts = packed.planes.iter().map(|p| p.front).chain(packed.rectangles.iter().map(|r| r.front));
@@ -84,6 +87,7 @@ impl FeatureSet {
             values: settings.values,
             samples: settings.samples,
             course: settings.samples > 1 && settings.jitter == Spread::Course,
+            lanes,
             lit: packed.lit.as_ref().map(|lit| LitFeatures {
                 mirror: lit.mirror,
                 clear: lit.clear,

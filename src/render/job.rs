@@ -35,7 +35,7 @@ impl Job<'_> {
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
         }
-        let features = FeatureSet::new(&packed, self.settings);
+        let features = FeatureSet::new(&packed, self.settings, gpu.lanes);
         let wgsl = compose::compose(&packed, &features);
         let packing = start.elapsed().as_secs_f64();
         let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl)?;
