@@ -89,7 +89,12 @@ impl Course {
             }
             random.skip(2 * u64::from(width) * u64::from(samples));
         }
-        Self { width, samples, checkpoints, stride }
+        Self {
+            width,
+            samples,
+            checkpoints,
+            stride,
+        }
     }
 
     /// The offsets of row `y`: those of a pixel's samples together, pixels from the left.
@@ -115,16 +120,34 @@ mod tests {
         // The first numbers that `random()` returns in a program that never calls `srandom()`.
         let mut random = Random::new();
         let first: Vec<u32> = (0..5).map(|_| random.next()).collect();
-        assert_eq!(first, [1_804_289_383, 846_930_886, 1_681_692_777, 1_714_636_915, 1_957_747_793]);
+        assert_eq!(
+            first,
+            [
+                1_804_289_383,
+                846_930_886,
+                1_681_692_777,
+                1_714_636_915,
+                1_957_747_793
+            ]
+        );
     }
 
     #[test]
     fn rows_follow_each_other_whatever_the_checkpoints() {
         let course = Course::new(5, 7, 3);
-        let coarse = Course { stride: 3, checkpoints: course.checkpoints.iter().step_by(3).cloned().collect(), ..course.clone() };
+        let coarse = Course {
+            stride: 3,
+            checkpoints: course.checkpoints.iter().step_by(3).cloned().collect(),
+            ..course.clone()
+        };
         let mut random = Random::new();
         for y in 0..7 {
-            let want: Vec<[f64; 2]> = (0..15).map(|_| { let a = random.offset(); [a, random.offset()] }).collect();
+            let want: Vec<[f64; 2]> = (0..15)
+                .map(|_| {
+                    let a = random.offset();
+                    [a, random.offset()]
+                })
+                .collect();
             assert_eq!(course.row(y), want);
             assert_eq!(coarse.row(y), want);
         }
@@ -139,7 +162,10 @@ mod tests {
                 count[((v + 0.5) * 8.0) as usize] += 1;
             }
         }
-        assert!(counts.iter().flatten().all(|&n| (850..1150).contains(&n)), "{counts:?}");
+        assert!(
+            counts.iter().flatten().all(|&n| (850..1150).contains(&n)),
+            "{counts:?}"
+        );
         assert_ne!(hash(1, 2, 3), hash(2, 2, 3));
         assert_ne!(hash(1, 2, 3), hash(1, 3, 3));
         assert_ne!(hash(1, 2, 3), hash(1, 2, 4));

@@ -14,13 +14,13 @@
 //!
 //! [`render::render`] runs the whole of it; `src/cli/` only turns arguments into such calls.
 
+pub mod cpu;
 pub mod diagnostic;
-pub mod vector;
-pub mod scene;
+pub mod gpu;
+pub mod image;
 pub mod jitter;
 pub mod prepare;
 pub mod real;
-pub mod cpu;
-pub mod gpu;
 pub mod render;
-pub mod image;
+pub mod scene;
+pub mod vector;

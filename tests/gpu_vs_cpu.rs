@@ -29,7 +29,13 @@ const BEYOND_F32: &[(&str, f64)] = &[
 
 /// The bytes of a pixel where f64 with error bounds is sure of them.
 fn bounded(scene: &Prepared<Bounded>, x: usize, y: usize) -> Result<[u8; 3], Fault> {
-    let traced = ray_trace(scene, &Limits::default(), x as f64, y as f64, &mut Unwatched)?;
+    let traced = ray_trace(
+        scene,
+        &Limits::default(),
+        x as f64,
+        y as f64,
+        &mut Unwatched,
+    )?;
     Ok(camera_setpix(traced.color)?)
 }
 
@@ -69,7 +75,9 @@ fn measure(path: &std::path::Path) -> Row {
             row.unsure += 1;
         } else {
             row.differ += 1;
-            row.worst = row.worst.max(g.iter().zip(c).map(|(a, b)| a.abs_diff(*b)).max().unwrap());
+            row.worst = row
+                .worst
+                .max(g.iter().zip(c).map(|(a, b)| a.abs_diff(*b)).max().unwrap());
         }
     }
     row
@@ -79,12 +87,22 @@ fn measure(path: &std::path::Path) -> Row {
 fn f32_agrees_with_f64() {
     let mut failures = Vec::new();
     let (mut pixels, mut differ) = (0, 0);
-    println!("{:28} {:>8} {:>8} {:>8} {:>9} {:>6}", "scene", "pixels", "unsure", "differ", "per cent", "worst");
+    println!(
+        "{:28} {:>8} {:>8} {:>8} {:>9} {:>6}",
+        "scene", "pixels", "unsure", "differ", "per cent", "worst"
+    );
     for path in common::good_scenes() {
-        if REFUSED.iter().any(|name| path.file_stem().is_some_and(|stem| stem == *name)) {
+        if REFUSED
+            .iter()
+            .any(|name| path.file_stem().is_some_and(|stem| stem == *name))
+        {
             for backend in [Backend::Gpu, Backend::Cpu] {
-                let error = render(&common::read(&path), &common::on(backend), &mut |_| Ok(())).unwrap_err();
-                assert!(error.to_string().contains("more than 65536 rays"), "{error}");
+                let error = render(&common::read(&path), &common::on(backend), &mut |_| Ok(()))
+                    .unwrap_err();
+                assert!(
+                    error.to_string().contains("more than 65536 rays"),
+                    "{error}"
+                );
             }
             continue;
         }
@@ -96,10 +114,16 @@ fn f32_agrees_with_f64() {
         );
         pixels += row.pixels;
         differ += row.differ;
-        let allowed = BEYOND_F32.iter().find(|(name, _)| *name == row.name).map_or(0.05, |(_, percent)| *percent);
+        let allowed = BEYOND_F32
+            .iter()
+            .find(|(name, _)| *name == row.name)
+            .map_or(0.05, |(_, percent)| *percent);
         // One pixel of a small picture is no share.
         if percent > allowed && row.differ > 1 {
-            failures.push(format!("{}: {percent:.3} % of {} pixels, {allowed} % allowed", row.name, row.pixels));
+            failures.push(format!(
+                "{}: {percent:.3} % of {} pixels, {allowed} % allowed",
+                row.name, row.pixels
+            ));
         }
     }
     let percent = 100.0 * differ as f64 / pixels as f64;
@@ -120,6 +144,9 @@ fn the_bounds_are_sure_of_nearly_every_pixel() {
         }
     }
     // A bound that always answers "undecided" would make the comparison above empty.
-    assert!(unsure * 200 < (width * height) as usize, "{unsure} pixels unsure");
+    assert!(
+        unsure * 200 < (width * height) as usize,
+        "{unsure} pixels unsure"
+    );
     assert!(Bounded::exact(1.0).positive().unwrap());
 }

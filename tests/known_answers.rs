@@ -16,16 +16,26 @@ const BEYOND_PAIRS: &[(&str, [u32; 2])] = &[("plane_z_around_zero.txt", [4, 3])]
 /// The stated pixels of a scene file.
 fn stated(text: &str) -> Vec<[u32; 5]> {
     let lines = text.lines().filter_map(|line| line.strip_prefix("#="));
-    lines.map(|line| {
-        let numbers: Vec<u32> = line.split_whitespace().map(|n| n.parse().unwrap()).collect();
-        numbers.try_into().unwrap()
-    })
-    .collect()
+    lines
+        .map(|line| {
+            let numbers: Vec<u32> = line
+                .split_whitespace()
+                .map(|n| n.parse().unwrap())
+                .collect();
+            numbers.try_into().unwrap()
+        })
+        .collect()
 }
 
 /// The bytes of a pixel where f64 with error bounds is sure of them.
 fn bounded(scene: &Prepared<Bounded>, x: u32, y: u32) -> Result<[u8; 3], Fault> {
-    let traced = ray_trace(scene, &Limits::default(), f64::from(x), f64::from(y), &mut Unwatched)?;
+    let traced = ray_trace(
+        scene,
+        &Limits::default(),
+        f64::from(x),
+        f64::from(y),
+        &mut Unwatched,
+    )?;
     Ok(camera_setpix(traced.color)?)
 }
 
@@ -49,14 +59,19 @@ fn stated_pixels_are_rendered() {
                 assert_eq!(certain, want, "{name}: pixel ({x}, {y}) with bounds");
             }
             if !BEYOND_PAIRS.contains(&(name.as_str(), [x, y])) {
-                let (_, bytes) = stages.trace(&Limits::default(), Sampling::Once, x, y).unwrap();
+                let (_, bytes) = stages
+                    .trace(&Limits::default(), Sampling::Once, x, y)
+                    .unwrap();
                 assert_eq!(bytes, want, "{name}: pixel ({x}, {y})");
             }
         }
     }
     println!("{all} stated pixels, f64 is sure of {sure}");
     // Bounds that are never sure would pass everything above.
-    assert!(sure * 4 > all, "f64 is sure of only {sure} of {all} stated pixels");
+    assert!(
+        sure * 4 > all,
+        "f64 is sure of only {sure} of {all} stated pixels"
+    );
 }
 
 #[test]
@@ -65,6 +80,8 @@ fn a_wrong_statement_is_noticed() {
     let scene = common::read(&path);
     let stages = Stages::new(&scene, View::from(0.0));
     let [x, y, r, g, b] = stated(&std::fs::read_to_string(&path).unwrap())[0];
-    let (_, bytes) = stages.trace(&Limits::default(), Sampling::Once, x, y).unwrap();
+    let (_, bytes) = stages
+        .trace(&Limits::default(), Sampling::Once, x, y)
+        .unwrap();
     assert_ne!(bytes, [(r ^ 1) as u8, g as u8, b as u8]);
 }

@@ -9,7 +9,12 @@ use plumb::render::{Backend, Settings, Spread, render};
 use plumb::scene::{Camera, Light, Material, Object, Scene, Shape, Surface};
 
 fn scene(pixeldim: [u32; 2], objects: Vec<Object>) -> Scene {
-    let material = |name: &str, ambient| Material { name: name.into(), ambient, diffuse: ambient, ..Material::default() };
+    let material = |name: &str, ambient| Material {
+        name: name.into(),
+        ambient,
+        diffuse: ambient,
+        ..Material::default()
+    };
     Scene {
         camera: Camera {
             name: "c".into(),
@@ -17,7 +22,10 @@ fn scene(pixeldim: [u32; 2], objects: Vec<Object>) -> Scene {
             worlddim: DVec2::new(2.0, 2.0),
             viewpoint: DVec3::new(1.0, 1.0, 1.0),
         },
-        materials: vec![material("red", DVec3::new(4e4, 0.0, 0.0)), material("blue", DVec3::new(0.0, 0.0, 3.0))],
+        materials: vec![
+            material("red", DVec3::new(4e4, 0.0, 0.0)),
+            material("blue", DVec3::new(0.0, 0.0, 3.0)),
+        ],
         objects,
         lights: vec![],
         textures: vec![],
@@ -25,12 +33,26 @@ fn scene(pixeldim: [u32; 2], objects: Vec<Object>) -> Scene {
 }
 
 fn wall(z: f64, material: usize) -> Object {
-    let shape = Shape::Plane { normal: DVec3::Z, point: DVec3::new(0.0, 0.0, z), extent: None };
-    Object { name: "wall".into(), material, shape, surface: Surface::Plain }
+    let shape = Shape::Plane {
+        normal: DVec3::Z,
+        point: DVec3::new(0.0, 0.0, z),
+        extent: None,
+    };
+    Object {
+        name: "wall".into(),
+        material,
+        shape,
+        surface: Surface::Plain,
+    }
 }
 
 fn ball(center: DVec3, radius: f64, material: usize) -> Object {
-    Object { name: "ball".into(), material, shape: Shape::Sphere { center, radius }, surface: Surface::Plain }
+    Object {
+        name: "ball".into(),
+        material,
+        shape: Shape::Sphere { center, radius },
+        surface: Surface::Plain,
+    }
 }
 
 /// lavapipe ends a loop after 65,535 iterations without a word; ours has to reach the last object, which is the nearest.
@@ -42,7 +64,10 @@ fn the_last_of_many_planes_is_seen() {
     let (gpu, report) = picture(&scene, &on(Backend::Gpu));
     assert_eq!(report.refined, 0, "the GPU itself has to reach it");
     assert_eq!(gpu, picture(&scene, &on(Backend::Cpu)).0);
-    assert!(gpu.chunks_exact(3).all(|p| p[0] == 0 && p[2] > 0), "{gpu:?}");
+    assert!(
+        gpu.chunks_exact(3).all(|p| p[0] == 0 && p[2] > 0),
+        "{gpu:?}"
+    );
 }
 
 /// More than the loops are sure to reach is never cut: refused with --backend gpu, rendered by the CPU with auto.
@@ -64,7 +89,8 @@ fn too_many_planes_are_not_cut() {
 #[test]
 fn a_walk_that_takes_too_long_is_handed_to_the_cpu() {
     // The ray along −z at (1, 1) passes the corner of each box, 1.34 radii from the center.
-    let balls = (0..40_000).map(|i| ball(DVec3::new(1.95, 1.95, -3.0 - 2.1 * f64::from(i)), 1.0, 0));
+    let balls =
+        (0..40_000).map(|i| ball(DVec3::new(1.95, 1.95, -3.0 - 2.1 * f64::from(i)), 1.0, 0));
     let mut objects: Vec<Object> = balls.collect();
     objects.push(wall(-1e5, 0));
     let scene = scene([1, 1], objects);
@@ -82,7 +108,12 @@ fn a_shadow_ray_that_takes_too_long_is_handed_to_the_cpu() {
     objects.push(wall(-1.0, 1));
     let mut scene = scene([1, 1], objects);
     let location = DVec3::new(1.0, 1.0, 2e5);
-    scene.lights.push(Light { name: "sun".into(), location, emissivity: DVec3::splat(1e5), cone: None });
+    scene.lights.push(Light {
+        name: "sun".into(),
+        location,
+        emissivity: DVec3::splat(1e5),
+        cone: None,
+    });
     let (gpu, report) = picture(&scene, &on(Backend::Gpu));
     assert_eq!(report.refined, 1);
     assert_eq!(gpu, picture(&scene, &on(Backend::Cpu)).0);
@@ -92,12 +123,30 @@ fn a_shadow_ray_that_takes_too_long_is_handed_to_the_cpu() {
 /// More samples than the loops are sure to make are taken by the CPU, not dropped.
 #[test]
 fn many_samples_are_not_cut() {
-    let objects: Vec<Object> = (1..100).map(|i| wall(-2.0 - f64::from(100 - i), 1)).collect();
+    let objects: Vec<Object> = (1..100)
+        .map(|i| wall(-2.0 - f64::from(100 - i), 1))
+        .collect();
     let scene = scene([2, 1], objects);
-    let settings = Settings { samples: 1000, ..on(Backend::Gpu) };
+    let settings = Settings {
+        samples: 1000,
+        ..on(Backend::Gpu)
+    };
     let (gpu, report) = picture(&scene, &settings);
-    assert_eq!(report.refined, 2, "1,000 times 99 objects are more than 65,535");
-    assert_eq!(gpu, picture(&scene, &Settings { backend: Backend::Cpu, ..settings }).0);
+    assert_eq!(
+        report.refined, 2,
+        "1,000 times 99 objects are more than 65,535"
+    );
+    assert_eq!(
+        gpu,
+        picture(
+            &scene,
+            &Settings {
+                backend: Backend::Cpu,
+                ..settings
+            }
+        )
+        .0
+    );
 }
 
 /// 100,000 spheres, found through the tree: the GPU's picture is the CPU's.
@@ -105,7 +154,9 @@ fn many_samples_are_not_cut() {
 fn a_hundred_thousand_spheres_agree() {
     let mut state = 1_u64;
     let mut next = |from: f64, to: f64| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         from + (to - from) * ((state >> 33) as f64 / f64::from(1_u32 << 31))
     };
     let balls = (0..100_000).map(|i| {
@@ -117,29 +168,51 @@ fn a_hundred_thousand_spheres_agree() {
     let (gpu, report) = picture(&scene, &on(Backend::Gpu));
     assert_eq!(report.refined, 0);
     let (cpu, _) = picture(&scene, &on(Backend::Cpu));
-    let differ = gpu.chunks_exact(3).zip(cpu.chunks_exact(3)).filter(|(g, c)| g != c).count();
+    let differ = gpu
+        .chunks_exact(3)
+        .zip(cpu.chunks_exact(3))
+        .filter(|(g, c)| g != c)
+        .count();
     assert!(differ <= 9, "{differ} of 19200 pixels differ");
-    let lit = gpu.chunks_exact(3).filter(|p| p.iter().any(|c| *c > 0)).count();
+    let lit = gpu
+        .chunks_exact(3)
+        .filter(|p| p.iter().any(|c| *c > 0))
+        .count();
     assert!(lit > 9000, "only {lit} pixels show a sphere");
 }
 
 /// A picture wider than high, higher than wide, of one pixel: every dispatch shape gives the CPU's picture.
 #[test]
 fn odd_sizes_agree() {
-    let objects = || vec![wall(-4.037, 1), ball(DVec3::new(1.013, 0.971, -3.03), 0.87, 1)];
+    let objects = || {
+        vec![
+            wall(-4.037, 1),
+            ball(DVec3::new(1.013, 0.971, -3.03), 0.87, 1),
+        ]
+    };
     for pixeldim in [[1, 1], [1, 517], [517, 1], [17, 16], [15, 33], [70_000, 1]] {
         let scene = scene(pixeldim, objects());
         let (gpu, _) = picture(&scene, &on(Backend::Gpu));
         let (cpu, _) = picture(&scene, &on(Backend::Cpu));
-        let differ = gpu.chunks_exact(3).zip(cpu.chunks_exact(3)).filter(|(g, c)| g != c).count();
-        assert!(differ * 2000 <= gpu.len() / 3, "{pixeldim:?}: {differ} pixels differ");
+        let differ = gpu
+            .chunks_exact(3)
+            .zip(cpu.chunks_exact(3))
+            .filter(|(g, c)| g != c)
+            .count();
+        assert!(
+            differ * 2000 <= gpu.len() / 3,
+            "{pixeldim:?}: {differ} pixels differ"
+        );
     }
 }
 
 /// Rows rendered alone are the rows of the whole picture, with either spread of the samples, on both tracers.
 #[test]
 fn rows_alone_are_rows_of_the_whole() {
-    let mut scene = scene([37, 29], vec![wall(-4.0, 1), ball(DVec3::new(1.0, 1.0, -3.0), 0.7, 1)]);
+    let mut scene = scene(
+        [37, 29],
+        vec![wall(-4.0, 1), ball(DVec3::new(1.0, 1.0, -3.0), 0.7, 1)],
+    );
     scene.lights.push(Light {
         name: "lamp".into(),
         location: DVec3::new(0.0, 2.0, 0.0),
@@ -148,13 +221,29 @@ fn rows_alone_are_rows_of_the_whole() {
     });
     for backend in [Backend::Gpu, Backend::Cpu] {
         for (samples, jitter) in [(1, Spread::Hash), (4, Spread::Hash), (4, Spread::Course)] {
-            let settings = Settings { samples, jitter, ..on(backend) };
+            let settings = Settings {
+                samples,
+                jitter,
+                ..on(backend)
+            };
             let (whole, _) = picture(&scene, &settings);
             let mut pieces = Vec::new();
             for rows in [17..29, 5..17, 4..5, 0..4] {
-                pieces.extend(picture(&scene, &Settings { rows: Some(rows), ..settings.clone() }).0);
+                pieces.extend(
+                    picture(
+                        &scene,
+                        &Settings {
+                            rows: Some(rows),
+                            ..settings.clone()
+                        },
+                    )
+                    .0,
+                );
             }
-            assert!(whole == pieces, "{backend:?}, {samples} samples, {jitter:?}");
+            assert!(
+                whole == pieces,
+                "{backend:?}, {samples} samples, {jitter:?}"
+            );
         }
     }
 }
@@ -162,7 +251,19 @@ fn rows_alone_are_rows_of_the_whole() {
 /// One thread or many: the same bytes.
 #[test]
 fn threads_change_nothing() {
-    let scene = scene([64, 64], vec![wall(-4.0, 1), ball(DVec3::new(1.0, 1.0, -3.0), 0.7, 1)]);
-    let threads = |n| picture(&scene, &Settings { threads: Some(n), ..on(Backend::Cpu) }).0;
+    let scene = scene(
+        [64, 64],
+        vec![wall(-4.0, 1), ball(DVec3::new(1.0, 1.0, -3.0), 0.7, 1)],
+    );
+    let threads = |n| {
+        picture(
+            &scene,
+            &Settings {
+                threads: Some(n),
+                ..on(Backend::Cpu)
+            },
+        )
+        .0
+    };
     assert!(threads(1) == threads(3));
 }

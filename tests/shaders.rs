@@ -14,7 +14,10 @@ use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
 use plumb::prepare::{Prepared, View};
 use plumb::render::{Settings, Spread};
-use plumb::scene::{Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture, TextureMode};
+use plumb::scene::{
+    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
+    TextureMode,
+};
 
 /// Something that a scene may have and a shader then needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,12 +77,26 @@ fn ingredients() -> Vec<Ingredient> {
 }
 
 fn plane(normal: DVec3, point: DVec3, surface: Surface) -> Object {
-    let shape = Shape::Plane { normal, point, extent: None };
-    Object { name: "p".into(), material: 0, shape, surface }
+    let shape = Shape::Plane {
+        normal,
+        point,
+        extent: None,
+    };
+    Object {
+        name: "p".into(),
+        material: 0,
+        shape,
+        surface,
+    }
 }
 
 fn sphere(center: DVec3, radius: f64, surface: Surface) -> Object {
-    Object { name: "s".into(), material: 0, shape: Shape::Sphere { center, radius }, surface }
+    Object {
+        name: "s".into(),
+        material: 0,
+        shape: Shape::Sphere { center, radius },
+        surface,
+    }
 }
 
 fn objects(ingredient: Ingredient) -> Vec<Object> {
@@ -88,22 +105,46 @@ fn objects(ingredient: Ingredient) -> Vec<Object> {
     let wide = |surface| sphere(DVec3::new(4.0, -30.0, -9.0), 29.0, surface);
     match ingredient {
         Plane => vec![floor(Surface::Plain)],
-        PlaneAcrossTheScreen => vec![plane(DVec3::new(3.0, 0.0, 1.0), DVec3::new(2.0, 0.0, 0.0), Surface::Plain)],
-        Tiled => vec![floor(Surface::Tiled { dimension: DVec2::new(2.0, 3.0), altmaterial: 0, xdir: None })],
+        PlaneAcrossTheScreen => vec![plane(
+            DVec3::new(3.0, 0.0, 1.0),
+            DVec3::new(2.0, 0.0, 0.0),
+            Surface::Plain,
+        )],
+        Tiled => vec![floor(Surface::Tiled {
+            dimension: DVec2::new(2.0, 3.0),
+            altmaterial: 0,
+            xdir: None,
+        })],
         Pplane(shader) => vec![floor(Surface::Procedural { shader })],
         SmallSphere => vec![small(Surface::Plain)],
         WideSphere => vec![wide(Surface::Plain)],
         SmallPsphere(shader) => vec![small(Surface::Procedural { shader })],
         WidePsphere(shader) => vec![wide(Surface::Procedural { shader })],
         ManyPlanes => (1..100)
-            .map(|i| plane(DVec3::Z, DVec3::new(0.0, 0.0, -f64::from(i)), Surface::Plain))
+            .map(|i| {
+                plane(
+                    DVec3::Z,
+                    DVec3::new(0.0, 0.0, -f64::from(i)),
+                    Surface::Plain,
+                )
+            })
             .collect(),
         ManySpheres => (0..1000)
-            .map(|i| sphere(DVec3::new(f64::from(i % 8), f64::from(i / 8 % 6), -9.0 - f64::from(i)), 0.3, Surface::Plain))
+            .map(|i| {
+                sphere(
+                    DVec3::new(f64::from(i % 8), f64::from(i / 8 % 6), -9.0 - f64::from(i)),
+                    0.3,
+                    Surface::Plain,
+                )
+            })
             .collect(),
         Rectangle => vec![rectangle(Surface::Plain)],
         TiledAlong => {
-            vec![floor(Surface::Tiled { dimension: DVec2::ONE, altmaterial: 0, xdir: Some(DVec3::new(1.0, 0.0, 1.0)) })]
+            vec![floor(Surface::Tiled {
+                dimension: DVec2::ONE,
+                altmaterial: 0,
+                xdir: Some(DVec3::new(1.0, 0.0, 1.0)),
+            })]
         }
         Texplane(mode) => vec![rectangle(Surface::Textured { texture: 0, mode })],
         Mirror => vec![of_material(1, floor(Surface::Plain))],
@@ -119,9 +160,21 @@ fn of_material(material: usize, object: Object) -> Object {
 }
 
 fn rectangle(surface: Surface) -> Object {
-    let extent = Some(Extent { xdir: DVec3::X, dimensions: DVec2::new(2.0, 3.0) });
-    let shape = Shape::Plane { normal: DVec3::Z, point: DVec3::new(1.0, 1.0, -4.0), extent };
-    Object { name: "r".into(), material: 0, shape, surface }
+    let extent = Some(Extent {
+        xdir: DVec3::X,
+        dimensions: DVec2::new(2.0, 3.0),
+    });
+    let shape = Shape::Plane {
+        normal: DVec3::Z,
+        point: DVec3::new(1.0, 1.0, -4.0),
+        extent,
+    };
+    Object {
+        name: "r".into(),
+        material: 0,
+        shape,
+        surface,
+    }
 }
 
 fn lights(ingredient: Ingredient) -> Vec<Light> {
@@ -135,24 +188,49 @@ fn lights(ingredient: Ingredient) -> Vec<Light> {
         // What materials do is seen by light alone.
         Lamp | Mirror | Glass | Glint => vec![light(6.0, None)],
         LampInFloor => vec![light(-1.0, None)],
-        Spotlight => vec![light(6.0, Some(Cone { point: DVec3::ZERO, theta: 20.0 }))],
+        Spotlight => vec![light(
+            6.0,
+            Some(Cone {
+                point: DVec3::ZERO,
+                theta: 20.0,
+            }),
+        )],
         _ => vec![],
     }
 }
 
 fn materials() -> Vec<Material> {
-    let material = || Material { name: "m".into(), ambient: DVec3::ONE, diffuse: DVec3::ONE, ..Material::default() };
+    let material = || Material {
+        name: "m".into(),
+        ambient: DVec3::ONE,
+        diffuse: DVec3::ONE,
+        ..Material::default()
+    };
     let specular = DVec3::splat(0.5);
     vec![
         material(),
-        Material { specular, ..material() },
-        Material { transparency: 0.5, ..material() },
-        Material { specular, shininess: 20.0, ..material() },
+        Material {
+            specular,
+            ..material()
+        },
+        Material {
+            transparency: 0.5,
+            ..material()
+        },
+        Material {
+            specular,
+            shininess: 20.0,
+            ..material()
+        },
     ]
 }
 
 fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
-    let texels = Texels { width: 2, height: 1, rgb: vec![0; 6] };
+    let texels = Texels {
+        width: 2,
+        height: 1,
+        rgb: vec![0; 6],
+    };
     let scene = Scene {
         camera: Camera {
             name: "c".into(),
@@ -173,8 +251,16 @@ fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
     let has = |ingredient| chosen.contains(&ingredient);
     let settings = Settings {
         values: has(Values),
-        samples: if has(Samples) || has(CourseSamples) { 16 } else { 1 },
-        jitter: if has(CourseSamples) { Spread::Course } else { Spread::Hash },
+        samples: if has(Samples) || has(CourseSamples) {
+            16
+        } else {
+            1
+        },
+        jitter: if has(CourseSamples) {
+            Spread::Course
+        } else {
+            Spread::Hash
+        },
         ..Settings::default()
     };
     let packed = Packed::new(&Prepared::new(&scene, View::new(0.0, settings.samples)));
@@ -185,7 +271,9 @@ fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
 fn validate(wgsl: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.emit_to_string(wgsl))?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-    validator.validate(&module).map_err(|error| error.emit_to_string(wgsl))?;
+    validator
+        .validate(&module)
+        .map_err(|error| error.emit_to_string(wgsl))?;
     Ok(module)
 }
 
@@ -207,7 +295,8 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     assert_valid(&wgsl, "all");
     // A scene that has everything but many objects has them as literals, and one without lights has other shapes.
     let few = |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres);
-    let dark = |i: &Ingredient| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint);
+    let dark =
+        |i: &Ingredient| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint);
     let without_many: Vec<_> = all.iter().copied().filter(few).collect();
     let (wgsl, few_features) = composed(&without_many);
     assert_valid(&wgsl, "all, unrolled");
@@ -217,13 +306,32 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     let both: Vec<_> = without_many.iter().copied().filter(dark).collect();
     let (wgsl, plain_features) = composed(&both);
     assert_valid(&wgsl, "all without lights, unrolled");
-    let spread: Vec<_> = without_many.iter().copied().filter(|i| *i != CourseSamples).collect();
+    let spread: Vec<_> = without_many
+        .iter()
+        .copied()
+        .filter(|i| *i != CourseSamples)
+        .collect();
     let (wgsl, spread_features) = composed(&spread);
     assert_valid(&wgsl, "all, unrolled, spread by the hash");
-    let every = [few_features, dark_features, plain_features, spread_features, features];
+    let every = [
+        few_features,
+        dark_features,
+        plain_features,
+        spread_features,
+        features,
+    ];
     // Together they have every name that the files ask for, so that none is left out above.
     let named: BTreeSet<&str> = every.iter().flat_map(FeatureSet::names).collect();
-    for name in ["front", "stack", "any_hit", "world_loop", "world_bvh", "course", "small_sphere_point", "level"] {
+    for name in [
+        "front",
+        "stack",
+        "any_hit",
+        "world_loop",
+        "world_bvh",
+        "course",
+        "small_sphere_point",
+        "level",
+    ] {
         assert!(named.contains(name) || name == "any_hit", "{name}");
     }
 }
@@ -232,8 +340,15 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
 fn every_scene_of_ours_is_valid() {
     for path in common::good_scenes() {
         for (values, samples) in [(false, 1), (true, 16)] {
-            let settings = Settings { values, samples, ..Settings::default() };
-            let packed = Packed::new(&Prepared::new(&common::read(&path), View::new(0.0, samples)));
+            let settings = Settings {
+                values,
+                samples,
+                ..Settings::default()
+            };
+            let packed = Packed::new(&Prepared::new(
+                &common::read(&path),
+                View::new(0.0, samples),
+            ));
             let features = FeatureSet::new(&packed, &settings, 8);
             assert_valid(&compose(&packed, &features), &path.display().to_string());
         }
@@ -246,22 +361,48 @@ fn what_is_not_used_is_not_there() {
     let lit = |i| matches!(i, Mirror | Glass | Glint | LampInFloor);
     let words: &[(&str, &dyn Fn(Ingredient) -> bool)] = &[
         ("plane_hits(", &|i| {
-            matches!(i, Plane | PlaneAcrossTheScreen | Tiled | TiledAlong | Pplane(_) | ManyPlanes | Mirror | LampInFloor)
+            matches!(
+                i,
+                Plane
+                    | PlaneAcrossTheScreen
+                    | Tiled
+                    | TiledAlong
+                    | Pplane(_)
+                    | ManyPlanes
+                    | Mirror
+                    | LampInFloor
+            )
         }),
         ("rectangle_hits", &|i| matches!(i, Rectangle | Texplane(_))),
         ("plane.front.x *", &|i| i == PlaneAcrossTheScreen),
-        ("small_sphere_hits", &|i| matches!(i, SmallSphere | SmallPsphere(_) | ManySpheres | Glass | Glint)),
-        ("wide_sphere_hits", &|i| matches!(i, WideSphere | WidePsphere(_))),
+        ("small_sphere_hits", &|i| {
+            matches!(
+                i,
+                SmallSphere | SmallPsphere(_) | ManySpheres | Glass | Glint
+            )
+        }),
+        ("wide_sphere_hits", &|i| {
+            matches!(i, WideSphere | WidePsphere(_))
+        }),
         ("bvh", &|i| i == ManySpheres),
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
         ("Pplane", &|i| matches!(i, Pplane(_))),
         ("Texplane", &|i| matches!(i, Texplane(_))),
         ("pplane_0_tiles", &|i| i == Pplane(0)),
         ("pplane_1_angle", &|i| matches!(i, Pplane(1 | 2))),
-        ("psphere_0_angle", &|i| matches!(i, SmallPsphere(0) | WidePsphere(0))),
-        ("color_wheel", &|i| matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))),
+        ("psphere_0_angle", &|i| {
+            matches!(i, SmallPsphere(0) | WidePsphere(0))
+        }),
+        ("color_wheel", &|i| {
+            matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))
+        }),
         ("vec4u", &|i| i == Values),
-        ("switch", &|i| matches!(i, Tiled | TiledAlong | Pplane(_) | Texplane(_) | SmallPsphere(_) | WidePsphere(_))),
+        ("switch", &|i| {
+            matches!(
+                i,
+                Tiled | TiledAlong | Pplane(_) | Texplane(_) | SmallPsphere(_) | WidePsphere(_)
+            )
+        }),
         ("light_term", &lit),
         ("fn shadow", &lit),
         ("diffuse", &lit),
@@ -275,7 +416,11 @@ fn what_is_not_used_is_not_there() {
     for ingredient in ingredients() {
         let (wgsl, _) = composed(&[ingredient]);
         for (word, may) in words {
-            assert_eq!(wgsl.contains(word), may(ingredient), "`{word}` and {ingredient:?}:\n{wgsl}");
+            assert_eq!(
+                wgsl.contains(word),
+                may(ingredient),
+                "`{word}` and {ingredient:?}:\n{wgsl}"
+            );
         }
     }
     assert!(!composed(&[]).0.contains("Ray"));
@@ -318,8 +463,13 @@ mod layout {
             .iter()
             .find(|(_, ty)| ty.name.as_deref() == Some(name))
             .unwrap_or_else(|| panic!("no struct {name}"));
-        let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
-        let offsets = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
+        let naga::TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no struct")
+        };
+        let offsets = members
+            .iter()
+            .map(|m| (m.name.clone().unwrap(), m.offset as usize))
+            .collect();
         (offsets, *span as usize)
     }
 
@@ -336,46 +486,159 @@ mod layout {
     fn records_are_laid_out_as_naga_says() {
         let all = ingredients();
         let module = assert_valid(&composed(&all).0, "all");
-        let dark: Vec<_> =
-            all.into_iter().filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint)).collect();
+        let dark: Vec<_> = all
+            .into_iter()
+            .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
+            .collect();
         let dark = assert_valid(&composed(&dark).0, "all without lights");
         same_layout!(module, "Job", pack::Job, first, size);
         same_layout!(dark, "Object", pack::Object, ambient, kind);
-        same_layout!(module, "Object", pack::LitObject, material, kind, group, place);
+        same_layout!(
+            module,
+            "Object",
+            pack::LitObject,
+            material,
+            kind,
+            group,
+            place
+        );
         same_layout!(dark, "Plane", pack::Plane, inverse, object, front, unused);
         same_layout!(
-            dark, "Rectangle", pack::Rectangle, inverse, object, front, unused, side_0, length_0, side_1, length_1
+            dark,
+            "Rectangle",
+            pack::Rectangle,
+            inverse,
+            object,
+            front,
+            unused,
+            side_0,
+            length_0,
+            side_1,
+            length_1
         );
         same_layout!(
-            dark, "SmallSphere", pack::SmallSphere, toward, rho2, gain, distance, offset, anchor, object, unused
-        );
-        same_layout!(dark, "WideSphere", pack::WideSphere, toward, kappa2, gain, distance, object, unused);
-        same_layout!(module, "BvhNode", pack::BvhNode, min, first, max, count);
-        same_layout!(
-            module, "Tiled", pack::TiledPlane, row_0, fraction_0, row_1, fraction_1, altmaterial, altindex, parity,
+            dark,
+            "SmallSphere",
+            pack::SmallSphere,
+            toward,
+            rho2,
+            gain,
+            distance,
+            offset,
+            anchor,
+            object,
             unused
         );
         same_layout!(
-            module, "Pplane", pack::ProceduralPlane, per_unit, unused_0, fraction, unused_1, parity, unused_2, from_point
+            dark,
+            "WideSphere",
+            pack::WideSphere,
+            toward,
+            kappa2,
+            gain,
+            distance,
+            object,
+            unused
+        );
+        same_layout!(module, "BvhNode", pack::BvhNode, min, first, max, count);
+        same_layout!(
+            module,
+            "Tiled",
+            pack::TiledPlane,
+            row_0,
+            fraction_0,
+            row_1,
+            fraction_1,
+            altmaterial,
+            altindex,
+            parity,
+            unused
         );
         same_layout!(
-            module, "Texplane", pack::Texplane, row_0, origin_0, row_1, origin_1, size, first, repeats
+            module,
+            "Pplane",
+            pack::ProceduralPlane,
+            per_unit,
+            unused_0,
+            fraction,
+            unused_1,
+            parity,
+            unused_2,
+            from_point
         );
         same_layout!(
-            module, "Material", pack::Material, ambient, transparency, diffuse, shininess, specular, unused_0, tint,
+            module,
+            "Texplane",
+            pack::Texplane,
+            row_0,
+            origin_0,
+            row_1,
+            origin_1,
+            size,
+            first,
+            repeats
+        );
+        same_layout!(
+            module,
+            "Material",
+            pack::Material,
+            ambient,
+            transparency,
+            diffuse,
+            shininess,
+            specular,
+            unused_0,
+            tint,
             unused_1
         );
-        same_layout!(module, "Light", pack::Light, location, cosine, emissivity, unused_0, axis, unused_1);
         same_layout!(
-            module, "WorldPlane", pack::WorldPlane, normal, offset, keep, group, own, object, row_0, origin_0, row_1,
-            origin_1, lengths, level, bounded
+            module,
+            "Light",
+            pack::Light,
+            location,
+            cosine,
+            emissivity,
+            unused_0,
+            axis,
+            unused_1
         );
-        same_layout!(module, "WorldSphere", pack::WorldSphere, center, radius, group, object, level, seen);
+        same_layout!(
+            module,
+            "WorldPlane",
+            pack::WorldPlane,
+            normal,
+            offset,
+            keep,
+            group,
+            own,
+            object,
+            row_0,
+            origin_0,
+            row_1,
+            origin_1,
+            lengths,
+            level,
+            bounded
+        );
+        same_layout!(
+            module,
+            "WorldSphere",
+            pack::WorldSphere,
+            center,
+            radius,
+            group,
+            object,
+            level,
+            seen
+        );
     }
 
     #[test]
     fn a_shifted_field_is_noticed() {
-        let wgsl = composed(&[Plane, ManyPlanes]).0.replace("    inverse: vec3f,\n", "    extra: u32,\n    inverse: vec3f,\n");
+        let wgsl = composed(&[Plane, ManyPlanes]).0.replace(
+            "    inverse: vec3f,\n",
+            "    extra: u32,\n    inverse: vec3f,\n",
+        );
         let module = naga::front::wgsl::parse_str(&wgsl).unwrap();
         let (members, _) = wgsl_struct(&module, "Plane");
         assert_ne!(members[1].1, offset_of!(pack::Plane, inverse));

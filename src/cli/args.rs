@@ -38,11 +38,18 @@ pub(crate) struct PictureOptions {
         value_parser = clap::value_parser!(u32).range(1..=MOST_SAMPLES),
         long_help = "\
 Samples a pixel, 1 to 65536. 1 is a ray through its middle; N are N rays spread over it, and the mean of their colours \
-is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures."
+is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures. Where a floor or wall runs through the screen's edge, the samples beyond it meet nothing: \
+put it a little farther out, or give --screen-tolerance."
     )]
     pub(crate) samples: u32,
     /// How several samples are spread: by a hash, or as the course's program did
-    #[arg(long, value_name = "SPREAD", value_enum, default_value_t)]
+    #[arg(
+        long,
+        value_name = "SPREAD",
+        value_enum,
+        ignore_case = true,
+        default_value_t
+    )]
     pub(crate) jitter: JitterName,
     /// Mirror images and what is seen through things end where the path from the viewpoint is longer than D
     #[arg(
@@ -134,7 +141,13 @@ written beside and renamed when it is whole; devices, pipes and links are writte
     #[arg(long, value_name = "A..B", value_parser = rows)]
     pub(crate) rows: Option<Range<u32>>,
     /// Which tracer: the GPU if there is one, else the CPU (auto); the GPU or an error; the CPU
-    #[arg(long, value_name = "TRACER", value_enum, default_value_t)]
+    #[arg(
+        long,
+        value_name = "TRACER",
+        value_enum,
+        ignore_case = true,
+        default_value_t
+    )]
     pub(crate) backend: BackendName,
     /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`)
     #[arg(long, value_name = "PART", value_parser = NonEmptyStringValueParser::new())]
@@ -150,7 +163,7 @@ written beside and renamed when it is whole; devices, pipes and links are writte
         long_help = "\
 The notes' listing of pixels, to stderr after the picture is done, bottom row first: any of pix, hit, drgb, irgb, \
 offset, separated by commas. It is computed on the CPU, whatever rendered the picture. Lines are begun by pix. A pixel \
-without a hit lists pix only. drgb is the colour (1 is full brightness), irgb the bytes as they are in the picture, \
+without a hit lists pix only. drgb is the colour (1 is full brightness), irgb the bytes as the CPU has them (a picture from the GPU differs by one here and there), \
 offset the pixel's number, from the top left of the whole picture."
     )]
     pub(crate) debug: Vec<DebugName>,

@@ -102,7 +102,6 @@ ENVIRONMENT
     after_long_help = AFTER_LONG_HELP,
     override_usage = "plumb <COMMAND>\n       plumb [OPTIONS] < SCENE > PICTURE.ppm",
     args_conflicts_with_subcommands = true,
-    disable_help_subcommand = true,
     max_term_width = 120
 )]
 struct Cli {

@@ -30,8 +30,9 @@ EXAMPLES
                                               and the rays of one of them
 
 HOW TO READ IT
-  Give the options that the picture was rendered with: the last line is its
-  bytes. All else is what the CPU's reference tracer has in f64.
+  Give the options that the picture was rendered with: the last line is the
+  bytes that --backend cpu renders. The GPU computes in f32, and differs by one
+  here and there. All else is what the CPU's reference tracer has in f64.
 
   objects  What every object answered to the ray from the viewpoint; the closest
            hit is marked *. Why an object is missed is found in exact arithmetic;

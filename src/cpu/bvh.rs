@@ -17,7 +17,9 @@ pub fn bvh_hits<E>(
     mut test: impl FnMut(usize) -> Result<f64, E>,
 ) -> Result<(), E> {
     // A zero component becomes tiny: the ray stays in its slab or out of it.
-    let inverse = dir.to_array().map(|c| 1.0 / if c.abs() < 1e-30 { 1e-30 } else { c });
+    let inverse = dir
+        .to_array()
+        .map(|c| 1.0 / if c.abs() < 1e-30 { 1e-30 } else { c });
     let base = base.to_array();
     let mut stack = Vec::new();
     let mut index = 0;
@@ -30,7 +32,11 @@ pub fn bvh_hits<E>(
                 reach = test(sphere)?;
             }
         } else {
-            let enters = |child: usize| bvh.nodes[child].enters(base, inverse).filter(|&near| near <= reach);
+            let enters = |child: usize| {
+                bvh.nodes[child]
+                    .enters(base, inverse)
+                    .filter(|&near| near <= reach)
+            };
             next = match (enters(first), enters(first + 1)) {
                 (Some(left), Some(right)) => {
                     let left_first = left <= right;

@@ -22,7 +22,11 @@ pub fn camera_getdir<R: Real>(camera: &Camera<R>, x: f64, y: f64) -> Ray<R> {
         R::exact(at - f64::from(camera.anchor[i])) * camera.step[i] + camera.offset[i]
     };
     let w = V3::new(axis(0, x), axis(1, y), -camera.distance);
-    Ray { pixel: [x, y], w, w2: w.dot(w) }
+    Ray {
+        pixel: [x, y],
+        w,
+        w2: w.dot(w),
+    }
 }
 
 /// The factor from a reflectivity to a pixel value: 1/t, the inverse of the distance s·|W| in world units.

@@ -56,10 +56,17 @@ pub fn list_pixels(
     for y in rows {
         for x in 0..width {
             let fault = |fault: Fault| match fault {
-                Fault::Undecided => io::Error::other(format!("pixel ({x}, {y}) is out of f64's range")),
-                Fault::TooManyRays => io::Error::other(PixelFault { x, y, max_rays: limits.max_rays }),
+                Fault::Undecided => {
+                    io::Error::other(format!("pixel ({x}, {y}) is out of f64's range"))
+                }
+                Fault::TooManyRays => io::Error::other(PixelFault {
+                    x,
+                    y,
+                    max_rays: limits.max_rays,
+                }),
             };
-            let traced = ray_trace(prepared, limits, f64::from(x), f64::from(y), &mut Unwatched).map_err(fault)?;
+            let traced = ray_trace(prepared, limits, f64::from(x), f64::from(y), &mut Unwatched)
+                .map_err(fault)?;
             if shown.pix {
                 write!(to, "\nPIX {x:4} {y:4} - ")?;
             }
@@ -73,7 +80,9 @@ pub fn list_pixels(
                 write!(to, "{name:<12} DRGB:{}", triple(traced.color.approx(), 2))?;
             }
             if shown.irgb {
-                let (_, [r, g, b]) = stages.trace(limits, Sampling::Once, x, y).map_err(io::Error::other)?;
+                let (_, [r, g, b]) = stages
+                    .trace(limits, Sampling::Once, x, y)
+                    .map_err(io::Error::other)?;
                 write!(to, " IRGB:({r:5}, {g:5}, {b:5})")?;
             }
             if shown.offset {

@@ -32,7 +32,11 @@ pub enum Lit<R> {
 
 /// The unit normal at a hit point, as the scene gives it or outward.
 pub fn normal_at<R: Real>(world: &World<R>, is_plane: bool, point: &Point<R>) -> V3<R> {
-    if is_plane { world.planes[world.places[point.object]].normal } else { point.from_center.unit() }
+    if is_plane {
+        world.planes[world.places[point.object]].normal
+    } else {
+        point.from_center.unit()
+    }
 }
 
 /// What light number `number` brings to a point with unit normal `normal`, seen by a ray from `base`.
@@ -51,9 +55,16 @@ pub fn light_term<R: Real>(
         return Ok(Lit::AtLight);
     }
     let distance = distance2.sqrt();
-    let d = V3::new(toward.x / distance, toward.y / distance, toward.z / distance);
+    let d = V3::new(
+        toward.x / distance,
+        toward.y / distance,
+        toward.z / distance,
+    );
     let level = scene.is_plane[point.object]
-        && world.planes[world.places[point.object]].level.binary_search(&number).is_ok();
+        && world.planes[world.places[point.object]]
+            .level
+            .binary_search(&number)
+            .is_ok();
     let c = d.dot(normal);
     if level || !c.positive()? {
         return Ok(Lit::FacesAway);
@@ -68,7 +79,11 @@ pub fn light_term<R: Real>(
     let falloff = c / distance * R::exact(two_to(-scene.camera.scale));
     let diffuse = getdiff(scene, point)?.each(light.emissivity).each(filter) * falloff;
     let glint = glint(scene, light, point, normal, base, d)?;
-    Ok(Lit::Lit { diffuse, glint, filter })
+    Ok(Lit::Lit {
+        diffuse,
+        glint,
+        filter,
+    })
 }
 
 /// Whether a point is in the light's cone; `d` is the unit vector from the point to the light.
@@ -87,8 +102,14 @@ fn shadow<R: Real>(
     d: V3<R>,
     light: Toward<R>,
 ) -> Result<Result<V3<R>, usize>, Undecided> {
-    let range = Range { skip: Some(world.groups[point.object]), light: Some(light) };
-    let reach = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
+    let range = Range {
+        skip: Some(world.groups[point.object]),
+        light: Some(light),
+    };
+    let reach = range
+        .light
+        .as_ref()
+        .map_or(f64::INFINITY, |light| light.distance.approx());
     let opaque = |object: usize| !scene.palette[scene.materials[object]].clear;
     let mut met = Vec::new();
     let mut dark = None;
@@ -104,20 +125,28 @@ fn shadow<R: Real>(
         return Ok(Err(blocker));
     }
     let met = one_at_a_place(world, met)?;
-    if let Some(blocker) = met.iter().map(|point| point.object).find(|&object| opaque(object)) {
+    if let Some(blocker) = met
+        .iter()
+        .map(|point| point.object)
+        .find(|&object| opaque(object))
+    {
         return Ok(Err(blocker));
     }
     let one = R::exact(1.0);
     let mut filter = V3::new(one, one, one);
     for point in &met {
         let material = &scene.palette[scene.materials[point.object]];
-        filter = filter.each(scene.palette[tile_material(scene, point)?].tint) * material.transparency;
+        filter =
+            filter.each(scene.palette[tile_material(scene, point)?].tint) * material.transparency;
     }
     Ok(Ok(filter))
 }
 
 /// Of surfaces met at the same place only the first in the file: seen from there the others are at t = 0, a miss.
-fn one_at_a_place<R: Real>(world: &World<R>, mut met: Vec<Met<R>>) -> Result<Vec<Point<R>>, Undecided> {
+fn one_at_a_place<R: Real>(
+    world: &World<R>,
+    mut met: Vec<Met<R>>,
+) -> Result<Vec<Point<R>>, Undecided> {
     // Of coincident surfaces that is decided already.
     met.sort_unstable_by_key(|met| (world.groups[met.point.object], met.point.object));
     met.dedup_by_key(|met| world.groups[met.point.object]);

@@ -33,7 +33,9 @@ pub fn make_pixel<R: Real>(
     y: u32,
 ) -> Result<V3<R>, Fault> {
     let (px, py) = (f64::from(x), f64::from(y));
-    let at = |[a, b]: [f64; 2]| ray_trace(scene, limits, px + a, py + b, &mut Unwatched).map(|traced| traced.color);
+    let at = |[a, b]: [f64; 2]| {
+        ray_trace(scene, limits, px + a, py + b, &mut Unwatched).map(|traced| traced.color)
+    };
     let mut sum = V3::new(R::zero(), R::zero(), R::zero());
     let count = match sampling {
         Sampling::Once => return at([0.0, 0.0]),
@@ -68,7 +70,11 @@ pub enum Jitter {
 impl Jitter {
     /// The offsets of a row, where they are not computed pixel by pixel.
     pub fn row(&self, y: u32) -> Option<Vec<[f64; 2]>> {
-        if let Self::Course(course) = self { Some(course.row(y)) } else { None }
+        if let Self::Course(course) = self {
+            Some(course.row(y))
+        } else {
+            None
+        }
     }
 
     /// The samples of pixel `x` in a row with these offsets.
@@ -101,22 +107,38 @@ pub type Pixel = ([f32; 3], [u8; 3]);
 impl<'a> Stages<'a> {
     /// Prepares the scene.
     pub fn new(scene: &'a Scene, view: View) -> Self {
-        Self { scene, view, bounded: Prepared::new(scene, view), pairs: OnceLock::new(), plain: OnceLock::new() }
+        Self {
+            scene,
+            view,
+            bounded: Prepared::new(scene, view),
+            pairs: OnceLock::new(),
+            plain: OnceLock::new(),
+        }
     }
 
     /// Value and bytes of pixel (x, y).
-    pub fn trace(&self, limits: &Limits, sampling: Sampling<'_>, x: u32, y: u32) -> Result<Pixel, PixelFault> {
+    pub fn trace(
+        &self,
+        limits: &Limits,
+        sampling: Sampling<'_>,
+        x: u32,
+        y: u32,
+    ) -> Result<Pixel, PixelFault> {
         let pixel = attempt(&self.bounded, limits, sampling, x, y).or_else(|fault| match fault {
             Fault::TooManyRays => Err(fault),
             Fault::Undecided => {
-                let pairs = self.pairs.get_or_init(|| Prepared::new(self.scene, self.view));
+                let pairs = self
+                    .pairs
+                    .get_or_init(|| Prepared::new(self.scene, self.view));
                 attempt(pairs, limits, sampling, x, y)
             }
         });
         let pixel = pixel.or_else(|fault| match fault {
             Fault::TooManyRays => Err(fault),
             Fault::Undecided => {
-                let plain = self.plain.get_or_init(|| Prepared::new(self.scene, self.view));
+                let plain = self
+                    .plain
+                    .get_or_init(|| Prepared::new(self.scene, self.view));
                 attempt(plain, limits, sampling, x, y)
             }
         });
@@ -124,7 +146,11 @@ impl<'a> Stages<'a> {
             Ok(pixel) => Ok(pixel),
             // Not a number even so: such a pixel stays black.
             Err(Fault::Undecided) => Ok(([0.0; 3], [0; 3])),
-            Err(Fault::TooManyRays) => Err(PixelFault { x, y, max_rays: limits.max_rays }),
+            Err(Fault::TooManyRays) => Err(PixelFault {
+                x,
+                y,
+                max_rays: limits.max_rays,
+            }),
         }
     }
 }
@@ -154,30 +180,48 @@ pub fn make_band(
     let width = width as usize;
     let pixels = width * (rows.end - rows.start) as usize;
     let mut rgb = vec![0; 3 * pixels];
-    let mut floats = if values { vec![[0.0; 3]; pixels] } else { Vec::new() };
+    let mut floats = if values {
+        vec![[0.0; 3]; pixels]
+    } else {
+        Vec::new()
+    };
     // Pieces of rows, small enough to share out, large enough not to cost.
-    let piece = (pixels / (8 * rayon::current_num_threads())).clamp(64, 8192).min(width);
+    let piece = (pixels / (8 * rayon::current_num_threads()))
+        .clamp(64, 8192)
+        .min(width);
     let top = rows.end - 1;
     // Beside each line of bytes its line of values, or nothing.
-    let value_lines: Vec<Option<&mut [[f32; 3]]>> = split(values.then_some(&mut floats[..]), width, rows.len());
-    rgb.par_chunks_mut(3 * width).zip(value_lines).enumerate().try_for_each(|(line, (bytes, values))| {
-        let y = top - line as u32;
-        let offsets = jitter.row(y);
-        let pieces = split(values, piece, width.div_ceil(piece));
-        bytes.par_chunks_mut(3 * piece).zip(pieces).enumerate().try_for_each(|(k, (bytes, mut values))| {
-            for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                let x = k * piece + i;
-                let sampling = jitter.pixel(offsets.as_deref(), width, x);
-                let (value, three) = scene.trace(limits, sampling, x as u32, y)?;
-                pixel.copy_from_slice(&three);
-                if let Some(values) = &mut values {
-                    values[i] = value;
-                }
-            }
-            Ok(())
-        })
-    })?;
-    Ok(Band { rows, rgb, values: values.then_some(floats) })
+    let value_lines: Vec<Option<&mut [[f32; 3]]>> =
+        split(values.then_some(&mut floats[..]), width, rows.len());
+    rgb.par_chunks_mut(3 * width)
+        .zip(value_lines)
+        .enumerate()
+        .try_for_each(|(line, (bytes, values))| {
+            let y = top - line as u32;
+            let offsets = jitter.row(y);
+            let pieces = split(values, piece, width.div_ceil(piece));
+            bytes
+                .par_chunks_mut(3 * piece)
+                .zip(pieces)
+                .enumerate()
+                .try_for_each(|(k, (bytes, mut values))| {
+                    for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                        let x = k * piece + i;
+                        let sampling = jitter.pixel(offsets.as_deref(), width, x);
+                        let (value, three) = scene.trace(limits, sampling, x as u32, y)?;
+                        pixel.copy_from_slice(&three);
+                        if let Some(values) = &mut values {
+                            values[i] = value;
+                        }
+                    }
+                    Ok(())
+                })
+        })?;
+    Ok(Band {
+        rows,
+        rgb,
+        values: values.then_some(floats),
+    })
 }
 
 /// Pieces of `size`, or as many nothings.

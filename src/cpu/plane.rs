@@ -54,7 +54,11 @@ pub fn plane_hits_from<R: Real>(
         return Ok(None);
     }
     if let Some(extent) = &plane.extent {
-        for (p, dimension) in extent.coordinates(position).into_iter().zip(extent.dimensions) {
+        for (p, dimension) in extent
+            .coordinates(position)
+            .into_iter()
+            .zip(extent.dimensions)
+        {
             if !p.non_negative()? || !(dimension - p).non_negative()? {
                 return Ok(None);
             }
@@ -65,5 +69,7 @@ pub fn plane_hits_from<R: Real>(
 
 /// A hit point with the coordinate that all points of the plane share, if there is one, set to exactly that.
 pub fn on_plane<R: Real>(plane: &WorldPlane<R>, position: V3<R>) -> V3<R> {
-    plane.own.map_or(position, |(axis, own)| position.with_axis(axis, own))
+    plane
+        .own
+        .map_or(position, |(axis, own)| position.with_axis(axis, own))
 }

@@ -7,7 +7,11 @@ use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the nearer hit on the sphere, or None for a miss; a tangent ray misses.
 #[inline]
-pub fn sphere_hits<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
+pub fn sphere_hits<R: Real>(
+    camera: &Camera<R>,
+    sphere: &Sphere<R>,
+    ray: &Ray<R>,
+) -> Result<Option<R>, Undecided> {
     let along = sphere.toward.dot(ray.w);
     let disc = sphere_disc(camera, sphere, ray, along);
     if !disc.positive()? || !along.positive()? {
@@ -33,8 +37,9 @@ fn sphere_disc<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, al
 #[inline]
 fn sphere_offset<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Option<[R; 2]> {
     let seen = sphere.seen.as_ref()?;
-    let axis =
-        |i: usize| R::exact(ray.pixel[i] - f64::from(seen.anchor[i])) * camera.step[i] + seen.offset[i];
+    let axis = |i: usize| {
+        R::exact(ray.pixel[i] - f64::from(seen.anchor[i])) * camera.step[i] + seen.offset[i]
+    };
     Some([axis(0), axis(1)])
 }
 
@@ -64,7 +69,12 @@ pub fn sphere_hits_from<R: Real>(
 /// With U = W − W_c: H − C = s·U + (s/s_c − 1)·C, and s/s_c − 1 = −(|W_c|·(e·U + √disc) + U·U)/W·W, where
 /// s/s_c − 1 is not taken as a difference: away from the limb the vector is as accurate, against the radius, for a sphere
 /// that is small and far as for one that is near.
-pub fn sphere_from_center<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, inverse: R) -> V3<R> {
+pub fn sphere_from_center<R: Real>(
+    camera: &Camera<R>,
+    sphere: &Sphere<R>,
+    ray: &Ray<R>,
+    inverse: R,
+) -> V3<R> {
     let s = R::exact(1.0) / inverse;
     let along = sphere.toward.dot(ray.w);
     let center = sphere.toward * sphere.distance;
@@ -75,5 +85,9 @@ pub fn sphere_from_center<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: 
     let disc = sphere_disc(camera, sphere, ray, along);
     let to_center = camera.distance / -e.z;
     let nearer = -((to_center * (e.x * u + e.y * v + disc.sqrt()) + (u * u + v * v)) / ray.w2);
-    V3::new(s * u + nearer * center.x, s * v + nearer * center.y, nearer * center.z)
+    V3::new(
+        s * u + nearer * center.x,
+        s * v + nearer * center.y,
+        nearer * center.z,
+    )
 }

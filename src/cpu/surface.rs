@@ -25,7 +25,10 @@ impl<R: Real> PlanePoint<'_, R> {
 
     /// Components x and y of H − point, in world units.
     pub fn from_point(&self) -> [R; 2] {
-        [self.plane.from_point[0].at(self.position.x), self.plane.from_point[1].at(self.position.y)]
+        [
+            self.plane.from_point[0].at(self.position.x),
+            self.plane.from_point[1].at(self.position.y),
+        ]
     }
 }
 
@@ -62,12 +65,21 @@ pub fn getamb<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<V3<R>, Unde
     let ambient = scene.palette[tile_material(scene, at)?].ambient;
     match &scene.surfaces[at.object] {
         Surface::Plain | Surface::Tiled(_) => Ok(ambient),
-        Surface::Pplane(plane) => {
-            procedural::pplane(plane.shader, &PlanePoint { position: at.position, ambient, plane })
-        }
-        Surface::Psphere(shader) => {
-            procedural::psphere(*shader, &SpherePoint { from_center: at.from_center, ambient })
-        }
+        Surface::Pplane(plane) => procedural::pplane(
+            plane.shader,
+            &PlanePoint {
+                position: at.position,
+                ambient,
+                plane,
+            },
+        ),
+        Surface::Psphere(shader) => procedural::psphere(
+            *shader,
+            &SpherePoint {
+                from_center: at.from_center,
+                ambient,
+            },
+        ),
         Surface::Textured(textured) => Ok(ambient.each(texel(scene, textured, at.position)?)),
     }
 }
@@ -87,24 +99,37 @@ fn tplane_odd<R: Real>(tiled: &Tiled<R>, position: V3<R>) -> Result<usize, Undec
         None => [position.x, position.z],
         Some(rows) => [rows[0].dot(position), rows[1].dot(position)],
     };
-    Ok(usize::from(tiled.index[0].odd(p)? != tiled.index[1].odd(q)?))
+    Ok(usize::from(
+        tiled.index[0].odd(p)? != tiled.index[1].odd(q)?,
+    ))
 }
 
 /// Column and row of the texel at a point of a `texplane`, from the bottom left.
-pub fn texel_place<R: Real>(textured: &Textured<R>, position: V3<R>) -> Result<[usize; 2], Undecided> {
+pub fn texel_place<R: Real>(
+    textured: &Textured<R>,
+    position: V3<R>,
+) -> Result<[usize; 2], Undecided> {
     let p = textured.extent.coordinates(position);
     let mut place = [0; 2];
     for (i, place) in place.iter_mut().enumerate() {
         let index = (p[i] * textured.per_unit[i]).floor()?;
         let size = f64::from(textured.size[i]);
-        let index = if textured.repeats { index.rem_euclid(size) } else { index.clamp(0.0, size - 1.0) };
+        let index = if textured.repeats {
+            index.rem_euclid(size)
+        } else {
+            index.clamp(0.0, size - 1.0)
+        };
         *place = index as usize;
     }
     Ok(place)
 }
 
 /// The texel at a point of a `texplane`, each channel byte/256.
-fn texel<R: Real>(scene: &Prepared<R>, textured: &Textured<R>, position: V3<R>) -> Result<V3<R>, Undecided> {
+fn texel<R: Real>(
+    scene: &Prepared<R>,
+    textured: &Textured<R>,
+    position: V3<R>,
+) -> Result<V3<R>, Undecided> {
     let place = texel_place(textured, position)?;
     let texels = &scene.textures[textured.texture];
     // The picture's top row comes first.
@@ -130,5 +155,9 @@ pub fn color_wheel<R: Real>(x: R, y: R) -> Result<V3<R>, Undecided> {
     let green = half * x - half_root_3 * y;
     let blue = half * x + half_root_3 * y;
     let scale = R::exact(2.0) / (x * x + y * y);
-    Ok(V3::new(x * x * scale, green * green * scale, blue * blue * scale))
+    Ok(V3::new(
+        x * x * scale,
+        green * green * scale,
+        blue * blue * scale,
+    ))
 }

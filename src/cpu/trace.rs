@@ -35,7 +35,11 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_path: 20.0, max_rays: 1 << 16, enough: 1.0 }
+        Self {
+            max_path: 20.0,
+            max_rays: 1 << 16,
+            enough: 1.0,
+        }
     }
 }
 
@@ -130,23 +134,48 @@ impl<R> Watch<R> for Unwatched {}
 
 /// The closest object that a primary ray hits; of equally near ones the first in the file.
 #[inline]
-pub fn find_closest_object<R: Real>(scene: &Prepared<R>, ray: &Ray<R>) -> Result<Option<Hit<R>>, Undecided> {
+pub fn find_closest_object<R: Real>(
+    scene: &Prepared<R>,
+    ray: &Ray<R>,
+) -> Result<Option<Hit<R>>, Undecided> {
     let mut closest: Option<Hit<R>> = None;
     for (index, plane) in scene.planes.iter().enumerate() {
         if let Some(inverse) = plane_hits(plane, ray)? {
-            nearer(&mut closest, Hit { inverse, object: plane.object, index })?;
+            nearer(
+                &mut closest,
+                Hit {
+                    inverse,
+                    object: plane.object,
+                    index,
+                },
+            )?;
         }
     }
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
         let sphere = &scene.spheres[index];
         if let Some(inverse) = sphere_hits(&scene.camera, sphere, ray)? {
-            nearer(&mut closest, Hit { inverse, object: sphere.object, index })?;
+            nearer(
+                &mut closest,
+                Hit {
+                    inverse,
+                    object: sphere.object,
+                    index,
+                },
+            )?;
         }
-        Ok(closest.as_ref().map_or(f64::INFINITY, |hit| 1.0 / hit.inverse.approx()))
+        Ok(closest
+            .as_ref()
+            .map_or(f64::INFINITY, |hit| 1.0 / hit.inverse.approx()))
     };
     let mut treated = 0;
     if let Some(bvh) = &scene.bvh {
-        bvh_hits(bvh, glam::DVec3::ZERO, ray.w.approx(), f64::INFINITY, &mut sphere)?;
+        bvh_hits(
+            bvh,
+            glam::DVec3::ZERO,
+            ray.w.approx(),
+            f64::INFINITY,
+            &mut sphere,
+        )?;
         treated = bvh.len;
     }
     for index in treated..scene.spheres.len() {
@@ -177,17 +206,29 @@ pub fn locate<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Point
     let object = hit.object;
     if scene.world.is_none() && matches!(scene.surfaces[object], Surface::Plain) {
         // Nothing asks where the hit is.
-        return Point { object, position: zero, from_center: zero };
+        return Point {
+            object,
+            position: zero,
+            from_center: zero,
+        };
     }
     let mut position = ray.w * (R::exact(1.0) / hit.inverse);
     if !scene.is_plane[object] {
         let sphere = &scene.spheres[hit.index];
-        return Point { object, position, from_center: sphere_from_center(&scene.camera, sphere, ray, hit.inverse) };
+        return Point {
+            object,
+            position,
+            from_center: sphere_from_center(&scene.camera, sphere, ray, hit.inverse),
+        };
     }
     if let Some(world) = &scene.world {
         position = on_plane(&world.planes[world.places[object]], position);
     }
-    Point { object, position, from_center: zero }
+    Point {
+        object,
+        position,
+        from_center: zero,
+    }
 }
 
 /// What a ray found, and the colour it brings, (r, g, b) with 1 as bright as a byte goes.
@@ -214,7 +255,14 @@ pub fn ray_trace<R: Real>(
     let ray = camera_getdir(&scene.camera, x, y);
     let zero = V3::new(R::zero(), R::zero(), R::zero());
     let hit = find_closest_object(scene, &ray)?;
-    let Some(hit) = hit else { return Ok(Traced { ray, hit, ambient: zero, color: zero }) };
+    let Some(hit) = hit else {
+        return Ok(Traced {
+            ray,
+            hit,
+            ambient: zero,
+            color: zero,
+        });
+    };
     let point = locate(scene, &ray, &hit);
     let ambient = getamb(scene, &point)?;
     let color = match &scene.world {
@@ -232,13 +280,24 @@ pub fn ray_trace<R: Real>(
                 parent: 0,
                 kind: RayKind::Primary,
             };
-            let mut tree = Tree { scene, world, waiting: Vec::new(), rays: 1, color: zero };
+            let mut tree = Tree {
+                scene,
+                world,
+                waiting: Vec::new(),
+                rays: 1,
+                color: zero,
+            };
             tree.shade(0, &first, length / hit.inverse, &point, watch)?;
             tree.grow(limits, watch)?;
             tree.color
         }
     };
-    Ok(Traced { ray, hit: Some(hit), ambient, color })
+    Ok(Traced {
+        ray,
+        hit: Some(hit),
+        ambient,
+        color,
+    })
 }
 
 /// The rays of a sample: those that wait, and what the others brought.
@@ -268,7 +327,10 @@ impl<R: Real> Tree<'_, R> {
                 return Err(Fault::TooManyRays);
             }
             self.rays += 1;
-            let range = Range { skip: ray.last, light: None };
+            let range = Range {
+                skip: ray.last,
+                light: None,
+            };
             match closest_from(self.world, ray.base, ray.dir, &range)? {
                 Some(met) => self.shade(number, &ray, met.t, &met.point, watch)?,
                 None => watch.missed(number, &ray, Unmet::Nothing),
@@ -310,7 +372,11 @@ impl<R: Real> Tree<'_, R> {
         let total = ray.total + t;
         let material = &scene.palette[scene.materials[point.object]];
         let one = R::exact(1.0);
-        let kept = if material.clear { one - material.transparency } else { one };
+        let kept = if material.clear {
+            one - material.transparency
+        } else {
+            one
+        };
         let unit = R::exact(two_to(-scene.camera.scale));
         let share = ray.weight.each(color) * (kept / total * unit);
         watch.adds(share);
@@ -318,7 +384,15 @@ impl<R: Real> Tree<'_, R> {
         let last = Some(world.groups[point.object]);
         let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>| {
             // A ray that counts for nothing need not be traced.
-            let branch = Branch { base: point.position, dir, total, last, weight, parent: number, kind };
+            let branch = Branch {
+                base: point.position,
+                dir,
+                total,
+                last,
+                weight,
+                parent: number,
+                kind,
+            };
             if weight.approx() == glam::DVec3::ZERO {
                 watch.missed(number, &branch, Unmet::Weightless);
             } else {
@@ -328,11 +402,19 @@ impl<R: Real> Tree<'_, R> {
         if material.mirror {
             let along = normal.dot(-ray.dir);
             let mirrored = normal * (along + along) + ray.dir;
-            leave(RayKind::Mirror, mirrored, ray.weight.each(material.specular));
+            leave(
+                RayKind::Mirror,
+                mirrored,
+                ray.weight.each(material.specular),
+            );
         }
         if material.clear {
             let tint = scene.palette[super::surface::tile_material(scene, point)?].tint;
-            leave(RayKind::Through, ray.dir, ray.weight.each(tint) * material.transparency);
+            leave(
+                RayKind::Through,
+                ray.dir,
+                ray.weight.each(tint) * material.transparency,
+            );
         }
         Ok(())
     }

@@ -48,13 +48,16 @@ pub fn closest_from<R: Real>(
             None => true,
             Some(best) => {
                 let difference = best.t - met.t;
-                difference.positive()? || (met.point.object < best.point.object && difference.non_negative()?)
+                difference.positive()?
+                    || (met.point.object < best.point.object && difference.non_negative()?)
             }
         };
         if takes {
             closest = Some(met);
         }
-        Ok(closest.as_ref().map_or(f64::INFINITY, |best| best.t.approx()))
+        Ok(closest
+            .as_ref()
+            .map_or(f64::INFINITY, |best| best.t.approx()))
     })?;
     Ok(closest)
 }
@@ -68,8 +71,16 @@ pub fn hits_from<R: Real>(
     range: &Range<R>,
     take: &mut impl FnMut(Met<R>) -> Result<f64, Undecided>,
 ) -> Result<(), Undecided> {
-    let before_light = |t: R| range.light.as_ref().map_or(Ok(true), |light| (light.distance - t).positive());
-    let mut reach = range.light.as_ref().map_or(f64::INFINITY, |light| light.distance.approx());
+    let before_light = |t: R| {
+        range
+            .light
+            .as_ref()
+            .map_or(Ok(true), |light| (light.distance - t).positive())
+    };
+    let mut reach = range
+        .light
+        .as_ref()
+        .map_or(f64::INFINITY, |light| light.distance.approx());
     for plane in &world.planes {
         if range.skip == Some(world.groups[plane.object]) || ends_at(range, &plane.level) {
             continue;
@@ -78,7 +89,14 @@ pub fn hits_from<R: Real>(
             && before_light(t)?
         {
             let zero = V3::new(R::zero(), R::zero(), R::zero());
-            reach = take(Met { t, point: Point { object: plane.object, position, from_center: zero } })?;
+            reach = take(Met {
+                t,
+                point: Point {
+                    object: plane.object,
+                    position,
+                    from_center: zero,
+                },
+            })?;
             if reach < 0.0 {
                 return Ok(());
             }
@@ -89,9 +107,15 @@ pub fn hits_from<R: Real>(
         let sphere = &world.spheres[index];
         let skipped = range.skip == Some(world.groups[sphere.object]);
         // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
-        let entry = |light: usize| (world.lights[light].location - sphere.center).dot(dir).positive();
+        let entry = |light: usize| {
+            (world.lights[light].location - sphere.center)
+                .dot(dir)
+                .positive()
+        };
         let at_light = match &range.light {
-            Some(light) if sphere.level.binary_search(&light.number).is_ok() => !entry(light.number)?,
+            Some(light) if sphere.level.binary_search(&light.number).is_ok() => {
+                !entry(light.number)?
+            }
             _ => false,
         };
         let asked = !skipped && !at_light && reach >= 0.0;
@@ -101,7 +125,14 @@ pub fn hits_from<R: Real>(
         {
             let position = base + dir * t;
             let from_center = position - sphere.center;
-            reach = take(Met { t, point: Point { object: sphere.object, position, from_center } })?;
+            reach = take(Met {
+                t,
+                point: Point {
+                    object: sphere.object,
+                    position,
+                    from_center,
+                },
+            })?;
         }
         Ok(reach)
     };
@@ -118,5 +149,8 @@ pub fn hits_from<R: Real>(
 
 /// Whether a shadow ray's light lies in the plane: then they meet at the light, not before it, or not at all.
 fn ends_at<R>(range: &Range<R>, level: &[usize]) -> bool {
-    range.light.as_ref().is_some_and(|light| level.binary_search(&light.number).is_ok())
+    range
+        .light
+        .as_ref()
+        .is_some_and(|light| level.binary_search(&light.number).is_ok())
 }

@@ -85,7 +85,10 @@ pub fn run(
 ) -> Result<BandTimes, BandError> {
     let (width, rows) = (frame.width, frame.rows.clone());
     let largest = largest_dispatch(gpu, pipeline, width, &rows);
-    let mut slots = [Slot::new(gpu, pipeline, largest), Slot::new(gpu, pipeline, largest)];
+    let mut slots = [
+        Slot::new(gpu, pipeline, largest),
+        Slot::new(gpu, pipeline, largest),
+    ];
     gpu.check()?;
     let mut plan = Plan::new(width, rows, largest, frame.tests);
     let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
@@ -123,12 +126,20 @@ pub fn run(
 /// Most pixels that one dispatch may have here.
 fn largest_dispatch(gpu: &Gpu, pipeline: &Pipeline, width: u32, rows: &Range<u32>) -> u64 {
     let limits = gpu.device.limits();
-    let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let bytes = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size);
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
     let offsets = u64::from(pipeline.offsets) * OFFSET_BYTES;
     // A row of workgroups at least, whatever it takes; wgpu says so if it is too much.
-    let by_offsets = MAX_OFFSETS.checked_div(offsets).unwrap_or(u64::MAX).max(u64::from(WORKGROUP * WORKGROUP));
-    MAX_PIXELS.min(bytes / pipeline.pixel_bytes).min(by_offsets).min(pixels)
+    let by_offsets = MAX_OFFSETS
+        .checked_div(offsets)
+        .unwrap_or(u64::MAX)
+        .max(u64::from(WORKGROUP * WORKGROUP));
+    MAX_PIXELS
+        .min(bytes / pipeline.pixel_bytes)
+        .min(by_offsets)
+        .min(pixels)
 }
 
 /// A rectangle of a band: columns of rows `band` (from the bottom).
@@ -142,15 +153,22 @@ struct Rectangle {
 
 impl Rectangle {
     fn pixels(&self) -> u64 {
-        u64::from(self.band.end - self.band.start) * u64::from(self.columns.end - self.columns.start)
+        u64::from(self.band.end - self.band.start)
+            * u64::from(self.columns.end - self.columns.start)
     }
 
     /// The offsets of the samples of its pixels, top row first.
     fn offsets(&self, jitter: &Jitter, samples: u32) -> Vec<[f32; 2]> {
-        let columns = self.columns.start as usize * samples as usize..self.columns.end as usize * samples as usize;
+        let columns = self.columns.start as usize * samples as usize
+            ..self.columns.end as usize * samples as usize;
         let rows = self.band.clone().rev().filter_map(|y| jitter.row(y));
-        rows.flat_map(|row| row[columns.clone()].iter().map(|[a, b]| [*a as f32, *b as f32]).collect::<Vec<_>>())
-            .collect()
+        rows.flat_map(|row| {
+            row[columns.clone()]
+                .iter()
+                .map(|[a, b]| [*a as f32, *b as f32])
+                .collect::<Vec<_>>()
+        })
+        .collect()
     }
 }
 
@@ -168,7 +186,13 @@ struct Plan {
 impl Plan {
     fn new(width: u32, rows: Range<u32>, largest: u64, tests: usize) -> Self {
         let pixels = (FIRST_TESTS / (tests as u64 + PIXEL_TESTS)).clamp(1, largest);
-        Self { width, rows, largest, pixels, band: None }
+        Self {
+            width,
+            rows,
+            largest,
+            pixels,
+            band: None,
+        }
     }
 
     /// Learns that a dispatch of so many pixels took so long.
@@ -187,9 +211,14 @@ impl Plan {
                     return None;
                 }
                 // Whole workgroups of rows if they fit; columns are cut where even those take too long.
-                let fitting = (self.largest / u64::from(self.width)).max(1).min(u64::from(u32::MAX)) as u32;
+                let fitting = (self.largest / u64::from(self.width))
+                    .max(1)
+                    .min(u64::from(u32::MAX)) as u32;
                 let wanted = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
-                let height = wanted.max(WORKGROUP).min(fitting).min(self.rows.end - self.rows.start);
+                let height = wanted
+                    .max(WORKGROUP)
+                    .min(fitting)
+                    .min(self.rows.end - self.rows.start);
                 let band = self.rows.end - height..self.rows.end;
                 self.rows.end = band.start;
                 (band, 0)
@@ -202,7 +231,11 @@ impl Plan {
         if !last {
             self.band = Some((band.clone(), end));
         }
-        Some(Rectangle { band, columns: column..end, last })
+        Some(Rectangle {
+            band,
+            columns: column..end,
+            last,
+        })
     }
 }
 
@@ -230,7 +263,12 @@ struct Clock {
 impl Slot {
     fn new(gpu: &Gpu, pipeline: &Pipeline, largest: u64) -> Self {
         let buffer = |label, size, usage| {
-            let descriptor = wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            };
             gpu.device.create_buffer(&descriptor)
         };
         let size = largest * pipeline.pixel_bytes;
@@ -239,42 +277,86 @@ impl Slot {
             size_of::<Job>() as u64,
             wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         );
-        let pixels = buffer("pixels", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let staging = buffer("staging", size, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let pixels = buffer(
+            "pixels",
+            size,
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        );
+        let staging = buffer(
+            "staging",
+            size,
+            wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        );
         let clock = gpu.timestamps.then(|| Clock {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("clock"),
                 ty: wgpu::QueryType::Timestamp,
                 count: 2,
             }),
-            resolved: buffer("clock", 16, wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
-            staging: buffer("clock staging", 16, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
+            resolved: buffer(
+                "clock",
+                16,
+                wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            ),
+            staging: buffer(
+                "clock staging",
+                16,
+                wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            ),
         });
         let offsets = (pipeline.offsets > 0).then(|| {
             let size = largest * u64::from(pipeline.offsets) * OFFSET_BYTES;
-            buffer("offsets", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST)
+            buffer(
+                "offsets",
+                size,
+                wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            )
         });
         let bind_group = pipeline.bind(gpu, &job, &pixels, offsets.as_ref());
-        Self { job, offsets, pixels, staging, bind_group, clock, pixel_bytes: pipeline.pixel_bytes, pending: None }
+        Self {
+            job,
+            offsets,
+            pixels,
+            staging,
+            bind_group,
+            clock,
+            pixel_bytes: pipeline.pixel_bytes,
+            pending: None,
+        }
     }
 
     fn submit(&mut self, gpu: &Gpu, pipeline: &Pipeline, jitter: &Jitter, rectangle: Rectangle) {
         let columns = rectangle.columns.end - rectangle.columns.start;
         let rows = rectangle.band.end - rectangle.band.start;
-        let job = Job { first: [rectangle.columns.start, rectangle.band.end - 1], size: [columns, rows] };
-        gpu.queue.write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+        let job = Job {
+            first: [rectangle.columns.start, rectangle.band.end - 1],
+            size: [columns, rows],
+        };
+        gpu.queue
+            .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
         if let Some(offsets) = &self.offsets {
-            gpu.queue.write_buffer(offsets, 0, bytemuck::cast_slice(&rectangle.offsets(jitter, pipeline.offsets)));
+            gpu.queue.write_buffer(
+                offsets,
+                0,
+                bytemuck::cast_slice(&rectangle.offsets(jitter, pipeline.offsets)),
+            );
         }
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let timestamp_writes = self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {
-            query_set: &clock.queries,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
-        });
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let timestamp_writes = self
+            .clock
+            .as_ref()
+            .map(|clock| wgpu::ComputePassTimestampWrites {
+                query_set: &clock.queries,
+                beginning_of_pass_write_index: Some(0),
+                end_of_pass_write_index: Some(1),
+            });
         {
-            let mut pass =
-                encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("plumb"), timestamp_writes });
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("plumb"),
+                timestamp_writes,
+            });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &self.bind_group, &[]);
             pass.dispatch_workgroups(columns.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
@@ -300,26 +382,42 @@ impl Slot {
         assembly: &mut Assembly,
         times: &mut BandTimes,
     ) -> Result<(u64, f64), GpuError> {
-        let Some((index, rectangle)) = self.pending.take() else { return Ok((0, 0.0)) };
+        let Some((index, rectangle)) = self.pending.take() else {
+            return Ok((0, 0.0));
+        };
         let start = Instant::now();
-        let polled = gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(index), timeout: None });
+        let polled = gpu.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(index),
+            timeout: None,
+        });
         gpu.check()?;
-        let lost = |reason: String| GpuError::Lost { adapter: gpu.name.clone(), reason };
+        let lost = |reason: String| GpuError::Lost {
+            adapter: gpu.name.clone(),
+            reason,
+        };
         polled.map_err(|error| lost(error.to_string()))?;
         let waited = start.elapsed().as_secs_f64();
         let kernel = match &self.clock {
             Some(clock) => {
-                let view = clock.staging.get_mapped_range(..).map_err(|error| lost(error.to_string()))?;
+                let view = clock
+                    .staging
+                    .get_mapped_range(..)
+                    .map_err(|error| lost(error.to_string()))?;
                 let ticks: [u64; 2] = [word(&view, 0), word(&view, 1)];
                 drop(view);
                 clock.staging.unmap();
-                ticks[1].saturating_sub(ticks[0]) as f64 * f64::from(gpu.queue.get_timestamp_period()) * 1e-9
+                ticks[1].saturating_sub(ticks[0]) as f64
+                    * f64::from(gpu.queue.get_timestamp_period())
+                    * 1e-9
             }
             None => waited,
         };
         let pixels = rectangle.pixels();
         let bytes = pixels * self.pixel_bytes;
-        let view = self.staging.get_mapped_range(..bytes).map_err(|error| lost(error.to_string()))?;
+        let view = self
+            .staging
+            .get_mapped_range(..bytes)
+            .map_err(|error| lost(error.to_string()))?;
         assembly.take(&rectangle, &view);
         drop(view);
         self.staging.unmap();
@@ -331,7 +429,10 @@ impl Slot {
 
 /// The little-endian u64 number `i` of a mapped buffer.
 fn word(view: &[u8], i: usize) -> u64 {
-    view.chunks_exact(8).nth(i).and_then(|bytes| bytes.try_into().ok()).map_or(0, u64::from_le_bytes)
+    view.chunks_exact(8)
+        .nth(i)
+        .and_then(|bytes| bytes.try_into().ok())
+        .map_or(0, u64::from_le_bytes)
 }
 
 /// The band under way, put together from its rectangles.
@@ -347,7 +448,13 @@ struct Assembly {
 
 impl Assembly {
     fn new(width: u32, values: bool) -> Self {
-        Self { width: width as usize, values, band: None, undecided: Vec::new(), complete: false }
+        Self {
+            width: width as usize,
+            values,
+            band: None,
+            undecided: Vec::new(),
+            complete: false,
+        }
     }
 
     /// Copies a rectangle's pixels to their place.
@@ -371,12 +478,18 @@ impl Assembly {
             }
             if verdicts != 0 {
                 let pixels = line.chunks_exact(pixel_bytes).enumerate();
-                self.undecided.extend(pixels.filter(|(_, p)| p[pixel_bytes - 1] != 0).map(|(i, _)| place.start + i));
+                self.undecided.extend(
+                    pixels
+                        .filter(|(_, p)| p[pixel_bytes - 1] != 0)
+                        .map(|(i, _)| place.start + i),
+                );
             }
             if let Some(values) = &mut band.values {
                 for (pixel, to) in line.chunks_exact(pixel_bytes).zip(&mut values[place]) {
                     let channel = |i: usize| -> f32 {
-                        let word = pixel[4 * i..4 * i + 4].try_into().map_or(0, u32::from_le_bytes);
+                        let word = pixel[4 * i..4 * i + 4]
+                            .try_into()
+                            .map_or(0, u32::from_le_bytes);
                         f32::from_bits(word) / 255.0
                     };
                     *to = [channel(0), channel(1), channel(2)];
@@ -387,16 +500,25 @@ impl Assembly {
     }
 
     /// The band, if all its rectangles have come, with what the CPU had to decide.
-    fn finished(&mut self, refine: &Refine<'_>, times: &mut BandTimes) -> Result<Option<Band>, PixelFault> {
+    fn finished(
+        &mut self,
+        refine: &Refine<'_>,
+        times: &mut BandTimes,
+    ) -> Result<Option<Band>, PixelFault> {
         if !std::mem::take(&mut self.complete) {
             return Ok(None);
         }
-        let Some(mut band) = self.band.take() else { return Ok(None) };
+        let Some(mut band) = self.band.take() else {
+            return Ok(None);
+        };
         times.refined += self.undecided.len() as u64;
         let (width, top) = (self.width, band.rows.end - 1);
         let decided: Vec<(usize, _)> = std::mem::take(&mut self.undecided)
             .into_par_iter()
-            .map(|place| refine((place % width) as u32, top - (place / width) as u32).map(|done| (place, done)))
+            .map(|place| {
+                refine((place % width) as u32, top - (place / width) as u32)
+                    .map(|done| (place, done))
+            })
             .collect::<Result<_, _>>()?;
         for (place, (value, bytes)) in decided {
             band.rgb[3 * place..3 * place + 3].copy_from_slice(&bytes);
@@ -413,7 +535,13 @@ mod tests {
     use super::*;
 
     /// Every pixel exactly once, bands from the top down, and no dispatch larger than allowed.
-    fn covers(width: u32, rows: Range<u32>, largest: u64, tested: usize, seconds: impl Fn(u64) -> f64) {
+    fn covers(
+        width: u32,
+        rows: Range<u32>,
+        largest: u64,
+        tested: usize,
+        seconds: impl Fn(u64) -> f64,
+    ) {
         let mut plan = Plan::new(width, rows.clone(), largest, tested);
         let mut top = rows.end;
         let mut column = 0;

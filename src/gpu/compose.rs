@@ -8,7 +8,9 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::features::FeatureSet;
-use super::pack::{Kind, Packed, Plane, Rectangle, SmallSphere, WideSphere, WorldPlane, WorldSphere};
+use super::pack::{
+    Kind, Packed, Plane, Rectangle, SmallSphere, WideSphere, WorldPlane, WorldSphere,
+};
 use crate::cpu::procedural::{PPLANE_WGSL, PSPHERE_WGSL};
 
 /// Side of the square workgroup: 16×16 or 256×1 were a fifth faster than 8×8 on lavapipe.
@@ -40,15 +42,25 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
         ("pplane_from_point", used("pplane_from_point(")),
         ("odd", names.contains("tiled") || used("pplane_odd(")),
     ];
-    names.extend(helpers.into_iter().filter_map(|(name, holds)| holds.then_some(name)));
+    names.extend(
+        helpers
+            .into_iter()
+            .filter_map(|(name, holds)| holds.then_some(name)),
+    );
 
     let lit = names.contains("lit");
     let files = [
         (BINDINGS, true),
         (CAMERA, true),
-        (JITTER, names.contains("samples") && !names.contains("course")),
+        (
+            JITTER,
+            names.contains("samples") && !names.contains("course"),
+        ),
         (PLANE, features.planes || features.rectangles || lit),
-        (SPHERE, features.small_spheres || features.wide_spheres || names.contains("lit_sphere")),
+        (
+            SPHERE,
+            features.small_spheres || features.wide_spheres || names.contains("lit_sphere"),
+        ),
         (BVH, features.bvh),
         (SURFACE, features.any_object()),
         (WORLD, lit),
@@ -60,7 +72,9 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
         "procedural_cases" => procedural_cases(features),
         "from_center_cases" => from_center_cases(features),
         "unrolled" => unrolled(packed, features),
-        "unrolled_closest" => unrolled_world(packed, features, |hits| format!("met_nearer(&closest, {hits});")),
+        "unrolled_closest" => unrolled_world(packed, features, |hits| {
+            format!("met_nearer(&closest, {hits});")
+        }),
         "unrolled_any" => unrolled_world(packed, features, |hits| {
             // The object's number, which comes last, is not asked for.
             let call = hits.rsplit_once(',').map_or(hits, |(call, _)| call);
@@ -81,10 +95,16 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     let camera = &packed.camera;
     let mut lines = vec![format!("const WORKGROUP = {WORKGROUP};")];
     if features.any_object() {
-        lines.push(format!("const CAMERA_ANCHOR = vec2i({}, {});", camera.anchor[0], camera.anchor[1]));
+        lines.push(format!(
+            "const CAMERA_ANCHOR = vec2i({}, {});",
+            camera.anchor[0], camera.anchor[1]
+        ));
         lines.push(format!("const CAMERA_STEP = {};", vector(&camera.step)));
         lines.push(format!("const CAMERA_OFFSET = {};", vector(&camera.offset)));
-        lines.push(format!("const CAMERA_DISTANCE = {};", literal(camera.distance)));
+        lines.push(format!(
+            "const CAMERA_DISTANCE = {};",
+            literal(camera.distance)
+        ));
         lines.push(format!("const CAMERA_GAIN = {};", literal(camera.gain)));
     }
     let names = features.names();
@@ -95,19 +115,43 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     };
     count("plane_loop", "PLANES", packed.planes.len());
     count("rectangle_loop", "RECTANGLES", packed.rectangles.len());
-    count("small_sphere_loop", "SMALL_SPHERES", packed.small_spheres.len());
-    count("wide_sphere_loop", "WIDE_SPHERES", packed.wide_spheres.len());
+    count(
+        "small_sphere_loop",
+        "SMALL_SPHERES",
+        packed.small_spheres.len(),
+    );
+    count(
+        "wide_sphere_loop",
+        "WIDE_SPHERES",
+        packed.wide_spheres.len(),
+    );
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
     // The last round of each of up to four loops only finds its end.
     count("counted", "LANES", features.lanes as usize);
-    count("counted", "PRIMARY_STEPS", if features.unrolled { 0 } else { packed.loop_iterations() + 4 });
+    count(
+        "counted",
+        "PRIMARY_STEPS",
+        if features.unrolled {
+            0
+        } else {
+            packed.loop_iterations() + 4
+        },
+    );
     if let Some(lit) = &packed.lit {
         count("lit", "LIGHTS", lit.lights.len());
         // The last round of either loop only finds its end.
         count("world_loop", "WORLD_STEPS", lit.loop_iterations() + 2);
         let in_shadows = names.contains("world_loop") && names.contains("any_hit");
-        count("lit", "SHADOW_STEPS", if in_shadows { lit.loop_iterations() + 2 } else { 0 });
+        count(
+            "lit",
+            "SHADOW_STEPS",
+            if in_shadows {
+                lit.loop_iterations() + 2
+            } else {
+                0
+            },
+        );
         count("world_plane_loop", "WORLD_PLANES", lit.planes.len());
         count("world_sphere_loop", "WORLD_TREE", lit.in_tree);
         count("world_sphere_loop", "WORLD_SPHERES", lit.spheres.len());
@@ -137,11 +181,18 @@ pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
 /// The procedural shaders used, and those that they call.
 fn procedural(features: &FeatureSet) -> String {
     let mut text = String::new();
-    for (table, used) in [(PPLANE_WGSL, features.pplanes()), (PSPHERE_WGSL, features.pspheres())] {
+    for (table, used) in [
+        (PPLANE_WGSL, features.pplanes()),
+        (PSPHERE_WGSL, features.pspheres()),
+    ] {
         let mut chosen: BTreeSet<usize> = used.into_iter().map(|n| n as usize).collect();
         loop {
             let called: BTreeSet<usize> = (0..table.len())
-                .filter(|&i| chosen.iter().any(|&c| c != i && table[c].1.contains(&format!("{}(", table[i].0))))
+                .filter(|&i| {
+                    chosen
+                        .iter()
+                        .any(|&c| c != i && table[c].1.contains(&format!("{}(", table[i].0)))
+                })
                 .collect();
             let before = chosen.len();
             chosen.extend(called);
@@ -163,13 +214,24 @@ fn procedural_cases(features: &FeatureSet) -> String {
     for kind in &features.kinds {
         let (point, family, shader) = match *kind {
             Kind::Plain | Kind::Tiled | Kind::Textured => continue,
-            Kind::Pplane(shader) => ("PlanePoint(point.position, ambient, pplanes[record])", PPLANE_WGSL, shader),
-            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => {
-                ("SpherePoint(point.from_center, ambient)", PSPHERE_WGSL, shader)
-            }
+            Kind::Pplane(shader) => (
+                "PlanePoint(point.position, ambient, pplanes[record])",
+                PPLANE_WGSL,
+                shader,
+            ),
+            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => (
+                "SpherePoint(point.from_center, ambient)",
+                PSPHERE_WGSL,
+                shader,
+            ),
         };
         let function = family.get(shader as usize).map_or("", |entry| entry.0);
-        writeln!(text, "        case {}: {{ return {function}({point}); }}", kind.name()).unwrap_or_default();
+        writeln!(
+            text,
+            "        case {}: {{ return {function}({point}); }}",
+            kind.name()
+        )
+        .unwrap_or_default();
     }
     text
 }
@@ -198,8 +260,15 @@ fn from_center_cases(features: &FeatureSet) -> String {
             Kind::WidePsphere(_) => "wide",
             _ => continue,
         };
-        let call = format!("{size}_sphere_from_center({size}_spheres[object.kind >> 8u], ray, hit.inverse)");
-        writeln!(text, "        case {}: {{ point.from_center = {call}; }}", kind.name()).unwrap_or_default();
+        let call = format!(
+            "{size}_sphere_from_center({size}_spheres[object.kind >> 8u], ray, hit.inverse)"
+        );
+        writeln!(
+            text,
+            "        case {}: {{ point.from_center = {call}; }}",
+            kind.name()
+        )
+        .unwrap_or_default();
     }
     text + "        default: {}\n    }\n"
 }
@@ -211,7 +280,11 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
         return text;
     }
     let mut line = |hits: &str, record: String, object: u32| {
-        writeln!(text, "    nearer(&closest, {hits}({record}, ray), {object}u);").unwrap_or_default();
+        writeln!(
+            text,
+            "    nearer(&closest, {hits}({record}, ray), {object}u);"
+        )
+        .unwrap_or_default();
     };
     for p in &packed.planes {
         line("plane_hits", plane_literal(p), p.object);
@@ -229,21 +302,40 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
 }
 
 /// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function.
-fn unrolled_world(packed: &Packed, features: &FeatureSet, statement: impl Fn(&str) -> String) -> String {
+fn unrolled_world(
+    packed: &Packed,
+    features: &FeatureSet,
+    statement: impl Fn(&str) -> String,
+) -> String {
     let mut text = String::new();
-    let (true, Some(lit)) = (features.unrolled, &packed.lit) else { return text };
+    let (true, Some(lit)) = (features.unrolled, &packed.lit) else {
+        return text;
+    };
     let mut line = |call: String| writeln!(text, "    {}", statement(&call)).unwrap_or_default();
     for p in &lit.planes {
-        line(format!("plane_hits_from({}, base, dir, range), {}u", world_plane_literal(p), p.object));
+        line(format!(
+            "plane_hits_from({}, base, dir, range), {}u",
+            world_plane_literal(p),
+            p.object
+        ));
     }
     for s in &lit.spheres {
-        line(format!("sphere_hits_from({}, base, dir, range), {}u", world_sphere_literal(s), s.object));
+        line(format!(
+            "sphere_hits_from({}, base, dir, range), {}u",
+            world_sphere_literal(s),
+            s.object
+        ));
     }
     text
 }
 
 fn plane_literal(p: &Plane) -> String {
-    format!("Plane({}, {}u, {}, 0u)", vector(&p.inverse), p.object, vector(&p.front))
+    format!(
+        "Plane({}, {}u, {}, 0u)",
+        vector(&p.inverse),
+        p.object,
+        vector(&p.front)
+    )
 }
 
 fn rectangle_literal(r: &Rectangle) -> String {
@@ -341,7 +433,12 @@ fn vector(values: &[f32]) -> String {
 }
 
 /// Copies the lines of `file` that the features ask for.
-fn preprocess(file: &str, names: &BTreeSet<&str>, insert: &dyn Fn(&str) -> String, text: &mut String) {
+fn preprocess(
+    file: &str,
+    names: &BTreeSet<&str>,
+    insert: &dyn Fn(&str) -> String,
+    text: &mut String,
+) {
     let mut keep = vec![true];
     for line in file.lines() {
         let all = keep.iter().all(|k| *k);

@@ -3,15 +3,18 @@
 use std::fmt::Write as _;
 
 use super::compose::compose;
+use super::device::SOFTWARE_LANES;
 use super::features::FeatureSet;
 use super::pack::Packed;
 use crate::prepare::{Prepared, View};
-use super::device::SOFTWARE_LANES;
 use crate::render::Settings;
 use crate::scene::Scene;
 
 fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
-    let packed = Packed::new(&Prepared::new(scene, View::new(settings.screen_tolerance, settings.samples)));
+    let packed = Packed::new(&Prepared::new(
+        scene,
+        View::new(settings.screen_tolerance, settings.samples),
+    ));
     let features = FeatureSet::new(&packed, settings, SOFTWARE_LANES);
     (packed, features)
 }
@@ -28,7 +31,13 @@ pub fn features(scene: &Scene, settings: &Settings) -> String {
         text.push_str(&kind.name().to_lowercase());
         text.push('\n');
     }
-    writeln!(text, "objects tested by a ray: {} of {}", packed.tested(), packed.objects.len()).unwrap_or_default();
+    writeln!(
+        text,
+        "objects tested by a ray: {} of {}",
+        packed.tested(),
+        packed.objects.len()
+    )
+    .unwrap_or_default();
     text
 }
 
@@ -41,8 +50,13 @@ pub fn buffers(scene: &Scene, settings: &Settings) -> String {
             return;
         }
         let bytes = size_of_val(records);
-        writeln!(text, "{name}: {} records of {} bytes, {bytes} in all", records.len(), size_of::<T>())
-            .unwrap_or_default();
+        writeln!(
+            text,
+            "{name}: {} records of {} bytes, {bytes} in all",
+            records.len(),
+            size_of::<T>()
+        )
+        .unwrap_or_default();
         for (i, record) in records.iter().enumerate() {
             writeln!(text, "  {i}: {record:?}").unwrap_or_default();
         }

@@ -80,18 +80,39 @@ pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
     let timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("plumb"),
-        required_features: if timestamps { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() },
+        required_features: if timestamps {
+            wgpu::Features::TIMESTAMP_QUERY
+        } else {
+            wgpu::Features::empty()
+        },
         required_limits: adapter.limits(),
         ..Default::default()
     };
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-        .map_err(|error| GpuError::Device { adapter: name.clone(), reason: error.to_string() })?;
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
+            GpuError::Device {
+                adapter: name.clone(),
+                reason: error.to_string(),
+            }
+        })?;
     let trouble = Arc::new(Mutex::new(Trouble::default()));
     watch(&device, &trouble);
     let device_seconds = start.elapsed().as_secs_f64();
     let software = info.device_type == wgpu::DeviceType::Cpu;
-    let lanes = if software { info.subgroup_max_size.max(SOFTWARE_LANES) } else { 1 };
-    Ok(Gpu { device, queue, name, timestamps, lanes, seconds: [instance_seconds, device_seconds], trouble })
+    let lanes = if software {
+        info.subgroup_max_size.max(SOFTWARE_LANES)
+    } else {
+        1
+    };
+    Ok(Gpu {
+        device,
+        queue,
+        name,
+        timestamps,
+        lanes,
+        seconds: [instance_seconds, device_seconds],
+        trouble,
+    })
 }
 
 /// Notes what wgpu reports by callback, where it would panic otherwise.
@@ -108,7 +129,10 @@ fn watch(device: &wgpu::Device, trouble: &Arc<Mutex<Trouble>>) {
     device.set_device_lost_callback(move |reason, message| {
         // Dropping the device counts as destroying it, and is no trouble.
         if reason != wgpu::DeviceLostReason::Destroyed {
-            lost.lock().unwrap_or_else(PoisonError::into_inner).lost.get_or_insert(message);
+            lost.lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .lost
+                .get_or_insert(message);
         }
     });
 }
@@ -153,17 +177,27 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
-fn choose<'a>(adapters: &'a [wgpu::Adapter], wanted: Option<&str>) -> Result<&'a wgpu::Adapter, GpuError> {
+fn choose<'a>(
+    adapters: &'a [wgpu::Adapter],
+    wanted: Option<&str>,
+) -> Result<&'a wgpu::Adapter, GpuError> {
     if adapters.is_empty() {
         return Err(GpuError::NoAdapter);
     }
     if let Some(wanted) = wanted {
         let part = wanted.to_lowercase();
-        let named = |adapter: &&wgpu::Adapter| describe(&adapter.get_info()).to_lowercase().contains(&part);
-        return adapters.iter().find(named).ok_or_else(|| GpuError::NoSuchAdapter {
-            wanted: wanted.to_owned(),
-            found: adapters.iter().map(|adapter| describe(&adapter.get_info())).collect(),
-        });
+        let named =
+            |adapter: &&wgpu::Adapter| describe(&adapter.get_info()).to_lowercase().contains(&part);
+        return adapters
+            .iter()
+            .find(named)
+            .ok_or_else(|| GpuError::NoSuchAdapter {
+                wanted: wanted.to_owned(),
+                found: adapters
+                    .iter()
+                    .map(|adapter| describe(&adapter.get_info()))
+                    .collect(),
+            });
     }
     let usable = adapters.iter().find(|adapter| problem(adapter).is_none());
     match usable {
@@ -178,11 +212,17 @@ fn choose<'a>(adapters: &'a [wgpu::Adapter], wanted: Option<&str>) -> Result<&'a
 /// Name and driver, for people.
 fn describe(info: &wgpu::AdapterInfo) -> String {
     let driver = driver(info);
-    if driver.is_empty() { info.name.clone() } else { format!("{} [{driver}]", info.name) }
+    if driver.is_empty() {
+        info.name.clone()
+    } else {
+        format!("{} [{driver}]", info.name)
+    }
 }
 
 fn driver(info: &wgpu::AdapterInfo) -> String {
-    format!("{} {}", info.driver, info.driver_info).trim().to_owned()
+    format!("{} {}", info.driver, info.driver_info)
+        .trim()
+        .to_owned()
 }
 
 /// Why plumb cannot use the adapter, if so.
@@ -194,7 +234,9 @@ fn problem(adapter: &wgpu::Adapter) -> Option<String> {
     }
     let needed = WORKGROUP * WORKGROUP;
     if limits.max_compute_invocations_per_workgroup < needed {
-        return Some(format!("its workgroups hold fewer than {needed} invocations"));
+        return Some(format!(
+            "its workgroups hold fewer than {needed} invocations"
+        ));
     }
     None
 }

@@ -73,8 +73,15 @@ impl FeatureSet {
     /// loops (see [`Gpu::lanes`](super::device::Gpu::lanes)).
     pub fn new(packed: &Packed, settings: &Settings, lanes: u32) -> Self {
         let tree = !packed.bvh.is_empty();
-        let objects = packed.lit.as_ref().map_or(packed.tested(), |lit| lit.planes.len() + lit.spheres.len());
-        let fronts = packed.planes.iter().map(|p| p.front).chain(packed.rectangles.iter().map(|r| r.front));
+        let objects = packed
+            .lit
+            .as_ref()
+            .map_or(packed.tested(), |lit| lit.planes.len() + lit.spheres.len());
+        let fronts = packed
+            .planes
+            .iter()
+            .map(|p| p.front)
+            .chain(packed.rectangles.iter().map(|r| r.front));
         Self {
             planes: !packed.planes.is_empty(),
             rectangles: !packed.rectangles.is_empty(),
@@ -111,13 +118,21 @@ impl FeatureSet {
 
     /// Numbers of the `pplane` shaders used.
     pub fn pplanes(&self) -> BTreeSet<u32> {
-        self.numbers(|kind| if let Kind::Pplane(shader) = kind { Some(shader) } else { None })
+        self.numbers(|kind| {
+            if let Kind::Pplane(shader) = kind {
+                Some(shader)
+            } else {
+                None
+            }
+        })
     }
 
     /// Numbers of the `psphere` shaders used.
     pub fn pspheres(&self) -> BTreeSet<u32> {
         self.numbers(|kind| match kind {
-            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => Some(shader),
+            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => {
+                Some(shader)
+            }
             _ => None,
         })
     }
@@ -141,7 +156,12 @@ impl FeatureSet {
         let lit = self.lit.filter(|_| any).unwrap_or_default();
         let lit_seen = is_lit && self.small_spheres;
         let loops = !self.unrolled;
-        let kinds_of_shape = [self.planes, self.rectangles, self.small_spheres, self.wide_spheres];
+        let kinds_of_shape = [
+            self.planes,
+            self.rectangles,
+            self.small_spheres,
+            self.wide_spheres,
+        ];
         [
             ("any_object", any),
             ("ambient_only", any && !is_lit),
@@ -152,17 +172,34 @@ impl FeatureSet {
             ("rectangle_loop", self.rectangles && loops),
             ("small_sphere", self.small_spheres),
             ("small_sphere_tree", self.bvh && !is_lit),
-            ("small_sphere_loop", self.small_spheres && loops && !self.bvh),
-            ("small_sphere_buffer", self.small_spheres && (loops || small_point || lit_seen)),
+            (
+                "small_sphere_loop",
+                self.small_spheres && loops && !self.bvh,
+            ),
+            (
+                "small_sphere_buffer",
+                self.small_spheres && (loops || small_point || lit_seen),
+            ),
             ("small_sphere_point", small_point || lit_seen),
             ("wide_sphere", self.wide_spheres),
             ("wide_sphere_loop", self.wide_spheres && loops),
-            ("wide_sphere_buffer", self.wide_spheres && (loops || wide_point)),
+            (
+                "wide_sphere_buffer",
+                self.wide_spheres && (loops || wide_point),
+            ),
             ("wide_sphere_point", wide_point),
             ("bvh", self.bvh),
             // Where objects do not come in the order of the file.
-            ("mixed", self.bvh || kinds_of_shape.iter().filter(|shape| **shape).count() > 1),
-            ("modulated", self.kinds.iter().any(|k| *k != Kind::Plain && (!is_lit || *k != Kind::Tiled))),
+            (
+                "mixed",
+                self.bvh || kinds_of_shape.iter().filter(|shape| **shape).count() > 1,
+            ),
+            (
+                "modulated",
+                self.kinds
+                    .iter()
+                    .any(|k| *k != Kind::Plain && (!is_lit || *k != Kind::Tiled)),
+            ),
             ("tiled", tiled),
             ("tiled_ambient", tiled && !is_lit),
             ("textured", textured),
@@ -188,7 +225,10 @@ impl FeatureSet {
             ("cone", lit.cone),
             ("level", lit.level),
             ("rectangle_anywhere", lit.rectangles),
-            ("world_loop", is_lit && loops && (lit.planes || lit.loose_spheres)),
+            (
+                "world_loop",
+                is_lit && loops && (lit.planes || lit.loose_spheres),
+            ),
             ("world_plane_loop", is_lit && loops && lit.planes),
             ("world_sphere_loop", is_lit && loops && lit.loose_spheres),
             ("world_bvh", is_lit && self.bvh),

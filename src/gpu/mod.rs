@@ -47,7 +47,9 @@ pub enum GpuError {
         adapter: String,
     },
     /// More objects than the loops of the shader are sure to reach.
-    #[error("the scene has {found} objects outside the tree of spheres, and a shader's loops are sure to reach {allowed} only")]
+    #[error(
+        "the scene has {found} objects outside the tree of spheres, and a shader's loops are sure to reach {allowed} only"
+    )]
     TooMany {
         /// Objects that a loop would ask.
         found: usize,

@@ -26,30 +26,43 @@ pub struct Pipeline {
 
 impl Pipeline {
     /// Compiles `wgsl`, composed for `packed` with `features`, and uploads the scene.
-    pub fn new(gpu: &Gpu, packed: &Packed, features: &FeatureSet, wgsl: &str) -> Result<Self, GpuError> {
+    pub fn new(
+        gpu: &Gpu,
+        packed: &Packed,
+        features: &FeatureSet,
+        wgsl: &str,
+    ) -> Result<Self, GpuError> {
         let start = Instant::now();
         let buffers = upload(gpu, packed, features)?;
         let upload_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("plumb"),
-            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-        });
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("plumb"),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            });
         gpu.check()?;
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("plumb"),
-            layout: None,
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("plumb"),
+                layout: None,
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
         gpu.check()?;
         let compile_seconds = start.elapsed().as_secs_f64();
         Ok(Self {
             pipeline,
             pixel_bytes: if features.values { 16 } else { 4 },
-            offsets: if features.names().contains("course") { features.samples } else { 0 },
+            offsets: if features.names().contains("course") {
+                features.samples
+            } else {
+                0
+            },
             seconds: [compile_seconds, upload_seconds],
             buffers,
         })
@@ -63,10 +76,19 @@ impl Pipeline {
         pixels: &wgpu::Buffer,
         offsets: Option<&wgpu::Buffer>,
     ) -> wgpu::BindGroup {
-        let own = [(0, job), (1, pixels)].into_iter().chain(offsets.map(|offsets| (16, offsets)));
+        let own = [(0, job), (1, pixels)]
+            .into_iter()
+            .chain(offsets.map(|offsets| (16, offsets)));
         let entries: Vec<_> = own
-            .chain(self.buffers.iter().map(|(binding, buffer)| (*binding, buffer)))
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .chain(
+                self.buffers
+                    .iter()
+                    .map(|(binding, buffer)| (*binding, buffer)),
+            )
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
             .collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("plumb"),
@@ -77,20 +99,40 @@ impl Pipeline {
 }
 
 /// The buffers that `shaders/bindings.wgsl` declares for these features.
-fn upload(gpu: &Gpu, packed: &Packed, features: &FeatureSet) -> Result<Vec<(u32, wgpu::Buffer)>, GpuError> {
+fn upload(
+    gpu: &Gpu,
+    packed: &Packed,
+    features: &FeatureSet,
+) -> Result<Vec<(u32, wgpu::Buffer)>, GpuError> {
     let names = features.names();
     let mut buffers = Vec::new();
-    let mut add = |name: &str, binding: u32, what: &'static str, bytes: &[u8]| -> Result<(), GpuError> {
-        if names.contains(name) {
-            buffers.push((binding, buffer(gpu, what, bytes)?));
-        }
-        Ok(())
-    };
+    let mut add =
+        |name: &str, binding: u32, what: &'static str, bytes: &[u8]| -> Result<(), GpuError> {
+            if names.contains(name) {
+                buffers.push((binding, buffer(gpu, what, bytes)?));
+            }
+            Ok(())
+        };
     add("ambient_only", 2, "objects", bytes(&packed.objects))?;
     add("plane_loop", 3, "planes", bytes(&packed.planes))?;
-    add("rectangle_loop", 4, "finite planes", bytes(&packed.rectangles))?;
-    add("small_sphere_buffer", 5, "spheres", bytes(&packed.small_spheres))?;
-    add("wide_sphere_buffer", 6, "wide spheres", bytes(&packed.wide_spheres))?;
+    add(
+        "rectangle_loop",
+        4,
+        "finite planes",
+        bytes(&packed.rectangles),
+    )?;
+    add(
+        "small_sphere_buffer",
+        5,
+        "spheres",
+        bytes(&packed.small_spheres),
+    )?;
+    add(
+        "wide_sphere_buffer",
+        6,
+        "wide spheres",
+        bytes(&packed.wide_spheres),
+    )?;
     add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
     add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
     add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;
@@ -100,8 +142,18 @@ fn upload(gpu: &Gpu, packed: &Packed, features: &FeatureSet) -> Result<Vec<(u32,
         add("lit", 2, "objects", bytes(&lit.objects))?;
         add("lit", 12, "materials", bytes(&lit.materials))?;
         add("lit", 13, "lights", bytes(&lit.lights))?;
-        add("world_planes", 14, "planes for all rays", bytes(&lit.planes))?;
-        add("world_spheres", 15, "spheres for all rays", bytes(&lit.spheres))?;
+        add(
+            "world_planes",
+            14,
+            "planes for all rays",
+            bytes(&lit.planes),
+        )?;
+        add(
+            "world_spheres",
+            15,
+            "spheres for all rays",
+            bytes(&lit.spheres),
+        )?;
     }
     gpu.check()?;
     Ok(buffers)
@@ -113,14 +165,23 @@ fn bytes<T: Pod>(records: &[T]) -> &[u8] {
 
 fn buffer(gpu: &Gpu, what: &'static str, contents: &[u8]) -> Result<wgpu::Buffer, GpuError> {
     let limits = gpu.device.limits();
-    let allowed = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let allowed = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size);
     let needed = contents.len() as u64;
     if needed > allowed {
-        return Err(GpuError::TooLarge { what, needed, allowed, adapter: gpu.name.clone() });
+        return Err(GpuError::TooLarge {
+            what,
+            needed,
+            allowed,
+            adapter: gpu.name.clone(),
+        });
     }
-    Ok(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(what),
-        contents,
-        usage: wgpu::BufferUsages::STORAGE,
-    }))
+    Ok(gpu
+        .device
+        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(what),
+            contents,
+            usage: wgpu::BufferUsages::STORAGE,
+        }))
 }

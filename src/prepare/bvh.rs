@@ -86,21 +86,28 @@ fn padded(sphere: &impl Bounds) -> Option<Boxed> {
         };
         Vec3A::new(at(center.x), at(center.y), at(center.z))
     };
-    (center.abs().max_element() + radius < REACH).then(|| Boxed(Aabb::new(corner(-1.0), corner(1.0))))
+    (center.abs().max_element() + radius < REACH)
+        .then(|| Boxed(Aabb::new(corner(-1.0), corner(1.0))))
 }
 
 /// Builds the tree over the spheres for which `eligible` holds, and puts those first, in the tree's order; the others
 /// follow in their own. None, and nothing moved, if they are too few.
 pub fn build<S: Bounds>(spheres: &mut Vec<S>, eligible: impl Fn(&S) -> bool) -> Option<Bvh> {
-    let boxes: Vec<Option<Boxed>> =
-        spheres.iter().map(|s| if eligible(s) { padded(s) } else { None }).collect();
+    let boxes: Vec<Option<Boxed>> = spheres
+        .iter()
+        .map(|s| if eligible(s) { padded(s) } else { None })
+        .collect();
     let inside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_some()).collect();
     if inside.len() < WORTHWHILE {
         return None;
     }
     let outside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_none()).collect();
     let boxes: Vec<Boxed> = boxes.into_iter().flatten().collect();
-    let tree = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Duration::default());
+    let tree = build_bvh2(
+        &boxes,
+        BvhBuildParams::fast_build(),
+        &mut Duration::default(),
+    );
     let nodes: Vec<Node> = tree
         .nodes
         .iter()
@@ -111,11 +118,19 @@ pub fn build<S: Bounds>(spheres: &mut Vec<S>, eligible: impl Fn(&S) -> bool) -> 
             count: node.prim_count,
         })
         .collect();
-    let order = tree.primitive_indices.iter().map(|&i| inside[i as usize]).chain(outside);
+    let order = tree
+        .primitive_indices
+        .iter()
+        .map(|&i| inside[i as usize])
+        .chain(outside);
     let mut unsorted: Vec<Option<S>> = std::mem::take(spheres).into_iter().map(Some).collect();
     spheres.extend(order.filter_map(|i| unsorted[i].take()));
     let depth = depth(&nodes);
-    Some(Bvh { nodes, depth, len: inside.len() })
+    Some(Bvh {
+        nodes,
+        depth,
+        len: inside.len(),
+    })
 }
 
 /// The depth of the tree: one node waits on each level of the way down.
@@ -168,8 +183,17 @@ mod tests {
 
     #[test]
     fn every_sphere_is_in_one_leaf_and_in_its_box() {
-        let mut spheres: Vec<_> =
-            (0..500).map(|i| sphere(i, (i % 10) as f64, (i / 10 % 10) as f64, -5.0 - (i / 100) as f64, 0.3)).collect();
+        let mut spheres: Vec<_> = (0..500)
+            .map(|i| {
+                sphere(
+                    i,
+                    (i % 10) as f64,
+                    (i / 10 % 10) as f64,
+                    -5.0 - (i / 100) as f64,
+                    0.3,
+                )
+            })
+            .collect();
         let tree = build(&mut spheres, |s| s.object % 5 != 0).unwrap();
         assert_eq!(tree.len, 400);
         assert!(spheres[..400].iter().all(|s| s.object % 5 != 0));
@@ -180,7 +204,10 @@ mod tests {
                 let s = &spheres[i as usize];
                 let c = s.toward * s.distance;
                 for (axis, at) in [c.x, c.y, c.z].into_iter().enumerate() {
-                    assert!(f64::from(node.min[axis]) < at - 0.3 && at + 0.3 < f64::from(node.max[axis]));
+                    assert!(
+                        f64::from(node.min[axis]) < at - 0.3
+                            && at + 0.3 < f64::from(node.max[axis])
+                    );
                 }
             }
         }
@@ -189,7 +216,9 @@ mod tests {
 
     #[test]
     fn few_spheres_get_no_tree() {
-        let mut spheres: Vec<_> = (0..WORTHWHILE - 1).map(|i| sphere(i, i as f64, 0.0, -5.0, 0.3)).collect();
+        let mut spheres: Vec<_> = (0..WORTHWHILE - 1)
+            .map(|i| sphere(i, i as f64, 0.0, -5.0, 0.3))
+            .collect();
         assert!(build(&mut spheres, |_| true).is_none());
     }
 }

@@ -32,13 +32,19 @@ impl<R: Real> Camera<R> {
         let axis = |pixels: u32, world: f64, view: f64| {
             let world_step = step(pixels, world);
             let anchor = if pixels > 1 {
-                (view / world_step.to_f64().value()).round().clamp(-ANCHOR_LIMIT, ANCHOR_LIMIT)
+                (view / world_step.to_f64().value())
+                    .round()
+                    .clamp(-ANCHOR_LIMIT, ANCHOR_LIMIT)
             } else {
                 0.0
             };
             let offset = origin(pixels, world) + ratio(anchor) * &world_step - ratio(view);
             let unit = power_of_two(scale);
-            (anchor as i32, R::ratio(&(world_step / &unit)), R::ratio(&(offset / &unit)))
+            (
+                anchor as i32,
+                R::ratio(&(world_step / &unit)),
+                R::ratio(&(offset / &unit)),
+            )
         };
         let (ax, sx, ox) = axis(camera.pixeldim[0], camera.worlddim.x, camera.viewpoint.x);
         let (ay, sy, oy) = axis(camera.pixeldim[1], camera.worlddim.y, camera.viewpoint.y);
@@ -54,16 +60,28 @@ impl<R: Real> Camera<R> {
 
 /// World units from one pixel to the next: worlddim / (pixeldim − 1), and 0 with a single pixel.
 pub fn step(pixels: u32, world: f64) -> Ratio {
-    if pixels > 1 { ratio(world) / ratio(f64::from(pixels - 1)) } else { Ratio::ZERO }
+    if pixels > 1 {
+        ratio(world) / ratio(f64::from(pixels - 1))
+    } else {
+        Ratio::ZERO
+    }
 }
 
 /// The world coordinate of pixel 0: 0, and the middle of the side with a single pixel.
 pub fn origin(pixels: u32, world: f64) -> Ratio {
-    if pixels > 1 { Ratio::ZERO } else { ratio(world) / ratio(2.0) }
+    if pixels > 1 {
+        Ratio::ZERO
+    } else {
+        ratio(world) / ratio(2.0)
+    }
 }
 
 /// The exponent of the power of two next below `z` > 0.
 pub fn exponent(z: f64) -> i32 {
     // Within what `two_to` can invert.
-    if z.is_normal() { (((z.to_bits() >> 52) & 0x7ff) as i32 - 1023).min(1022) } else { -1022 }
+    if z.is_normal() {
+        (((z.to_bits() >> 52) & 0x7ff) as i32 - 1023).min(1022)
+    } else {
+        -1022
+    }
 }

@@ -70,6 +70,10 @@ impl<R: Real> Light<R> {
             let axis = (V3::exact(cone.point) - location) * unit;
             (axis.unit(), R::cos_degrees(cone.theta))
         });
-        Self { location: (location - viewpoint) * unit, emissivity: V3::exact(light.emissivity), cone }
+        Self {
+            location: (location - viewpoint) * unit,
+            emissivity: V3::exact(light.emissivity),
+            cone,
+        }
     }
 }

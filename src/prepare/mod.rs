@@ -43,7 +43,10 @@ pub struct View {
 impl View {
     /// The view for a number of samples a pixel.
     pub fn new(screen_tolerance: f64, samples: u32) -> Self {
-        Self { screen_tolerance, margin: if samples > 1 { 0.5 } else { 0.0 } }
+        Self {
+            screen_tolerance,
+            margin: if samples > 1 { 0.5 } else { 0.0 },
+        }
     }
 }
 
@@ -91,8 +94,19 @@ impl<R: Real> Prepared<R> {
         let mut surfaces = Vec::with_capacity(scene.objects.len());
         for (index, object) in scene.objects.iter().enumerate() {
             match object.shape {
-                Shape::Plane { normal, point, extent } => {
-                    planes.extend(Plane::new(&scene.camera, view, index, normal, point, extent.as_ref()));
+                Shape::Plane {
+                    normal,
+                    point,
+                    extent,
+                } => {
+                    planes.extend(Plane::new(
+                        &scene.camera,
+                        view,
+                        index,
+                        normal,
+                        point,
+                        extent.as_ref(),
+                    ));
                 }
                 Shape::Sphere { center, radius } => {
                     spheres.extend(Sphere::new(&scene.camera, &camera, index, center, radius));
@@ -102,12 +116,35 @@ impl<R: Real> Prepared<R> {
         }
         let bvh = bvh::build(&mut spheres, |sphere| sphere.seen.is_some());
         let materials = scene.objects.iter().map(|object| object.material).collect();
-        let is_plane = scene.objects.iter().map(|object| matches!(object.shape, Shape::Plane { .. })).collect();
-        let any_clear = scene.objects.iter().any(|object| scene.materials[object.material].transparency != 0.0);
+        let is_plane = scene
+            .objects
+            .iter()
+            .map(|object| matches!(object.shape, Shape::Plane { .. }))
+            .collect();
+        let any_clear = scene
+            .objects
+            .iter()
+            .any(|object| scene.materials[object.material].transparency != 0.0);
         let palette = scene.materials.iter().map(Material::new).collect();
-        let textures = scene.textures.iter().map(|texture| Arc::clone(&texture.texels)).collect();
+        let textures = scene
+            .textures
+            .iter()
+            .map(|texture| Arc::clone(&texture.texels))
+            .collect();
         let lit = !scene.lights.is_empty();
         let world = lit.then(|| World::new(scene, camera.scale, view.screen_tolerance));
-        Self { camera, planes, spheres, bvh, surfaces, materials, is_plane, any_clear, palette, textures, world }
+        Self {
+            camera,
+            planes,
+            spheres,
+            bvh,
+            surfaces,
+            materials,
+            is_plane,
+            any_clear,
+            palette,
+            textures,
+            world,
+        }
     }
 }

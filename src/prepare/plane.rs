@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::View;
 use super::camera::{origin, step};
-use super::exact::{Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, sub, two_to};
+use super::exact::{
+    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, sub, two_to,
+};
 use crate::real::{Real, V3};
 use crate::scene;
 
@@ -49,20 +51,32 @@ pub struct Sides<R> {
 
 impl<R: Real> Extent<R> {
     /// Prepares a rectangle, positions from the viewpoint.
-    pub fn new(camera: &scene::Camera, scale: i32, normal: DVec3, point: DVec3, extent: &scene::Extent) -> Self {
+    pub fn new(
+        camera: &scene::Camera,
+        scale: i32,
+        normal: DVec3,
+        point: DVec3,
+        extent: &scene::Extent,
+    ) -> Self {
         let rows = rows(normal, extent.xdir);
         let unit = R::exact(two_to(-scale));
         let corner = (V3::exact(point) - V3::exact(camera.viewpoint)) * unit;
         Self {
             rows,
             origin: rows.map(|row| row.dot(corner)),
-            dimensions: [R::exact(extent.dimensions.x) * unit, R::exact(extent.dimensions.y) * unit],
+            dimensions: [
+                R::exact(extent.dimensions.x) * unit,
+                R::exact(extent.dimensions.y) * unit,
+            ],
         }
     }
 
     /// The coordinates of a point of the plane along the sides.
     pub fn coordinates(&self, position: V3<R>) -> [R; 2] {
-        [self.rows[0].dot(position) - self.origin[0], self.rows[1].dot(position) - self.origin[1]]
+        [
+            self.rows[0].dot(position) - self.origin[0],
+            self.rows[1].dot(position) - self.origin[1],
+        ]
     }
 }
 
@@ -72,7 +86,11 @@ pub fn rows<R: Real>(normal: DVec3, xdir: DVec3) -> [V3<R>; 2] {
     let (n, x) = (ratio3(normal), ratio3(xdir));
     let (nn, nx) = (dot(&n, &n), dot(&n, &x));
     let across = [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx);
-    let largest = across.iter().cloned().map(abs).fold(Ratio::ZERO, |a, b| if b > a { b } else { a });
+    let largest = across
+        .iter()
+        .cloned()
+        .map(abs)
+        .fold(Ratio::ZERO, |a, b| if b > a { b } else { a });
     let [a, b, c] = across.map(|c| R::ratio(&(c / &largest)));
     let r0 = V3::new(a, b, c).unit();
     let unit_normal = super::world::shortened::<R>(normal).unit();
@@ -106,7 +124,11 @@ impl<R: Real> Plane<R> {
         }
         let scale = super::camera::exponent(camera.viewpoint.z);
         let unit = power_of_two(scale);
-        let inverse = [R::ratio(&(&a * &unit)), R::ratio(&(&b * &unit)), R::ratio(&c)];
+        let inverse = [
+            R::ratio(&(&a * &unit)),
+            R::ratio(&(&b * &unit)),
+            R::ratio(&c),
+        ];
         let sides = extent.map(|extent| {
             let extent = Extent::<R>::new(camera, scale, normal, point, extent);
             let distance = R::ratio(&(&v[2] / &unit));
@@ -118,9 +140,17 @@ impl<R: Real> Plane<R> {
                     -(row.z * distance) - origin * inverse[2],
                 ]
             };
-            Sides { forms: [form(0), form(1)], dimensions: extent.dimensions }
+            Sides {
+                forms: [form(0), form(1)],
+                dimensions: extent.dimensions,
+            }
         });
-        Some(Self { object, inverse, front: (!front.always).then(|| front.form.map(|f| R::ratio(&f))), sides })
+        Some(Self {
+            object,
+            inverse,
+            front: (!front.always).then(|| front.form.map(|f| R::ratio(&f))),
+            sides,
+        })
     }
 }
 
@@ -133,9 +163,21 @@ struct Front {
 
 impl Front {
     /// H.z = V.z·(1 − s) ≤ τ, with s > 0, is (V.z − τ)·(1/s) ≤ V.z.
-    fn new(camera: &scene::Camera, View { screen_tolerance, margin }: View, a: &Ratio, b: &Ratio, c: &Ratio) -> Self {
+    fn new(
+        camera: &scene::Camera,
+        View {
+            screen_tolerance,
+            margin,
+        }: View,
+        a: &Ratio,
+        b: &Ratio,
+        c: &Ratio,
+    ) -> Self {
         let [width, height] = camera.pixeldim;
-        let (dx, dy) = (step(width, camera.worlddim.x), step(height, camera.worlddim.y));
+        let (dx, dy) = (
+            step(width, camera.worlddim.x),
+            step(height, camera.worlddim.y),
+        );
         let x0 = origin(width, camera.worlddim.x) - ratio(camera.viewpoint.x);
         let y0 = origin(height, camera.worlddim.y) - ratio(camera.viewpoint.y);
         // 1/s over pixels.
@@ -144,14 +186,28 @@ impl Front {
         let constant = a * x0 + b * y0 + c;
         let vz = ratio(camera.viewpoint.z);
         let reach = &vz - ratio(screen_tolerance);
-        let mut form = [-(&reach * &per_x), -(&reach * &per_y), vz - &reach * &constant];
+        let mut form = [
+            -(&reach * &per_x),
+            -(&reach * &per_y),
+            vz - &reach * &constant,
+        ];
         let at = |f: &[Ratio; 3], x: f64, y: f64| &f[0] * ratio(x) + &f[1] * ratio(y) + &f[2];
-        let (right, top) = (f64::from(width - 1) + margin, f64::from(height - 1) + margin);
-        let corners = [(-margin, -margin), (right, -margin), (-margin, top), (right, top)];
+        let (right, top) = (
+            f64::from(width - 1) + margin,
+            f64::from(height - 1) + margin,
+        );
+        let corners = [
+            (-margin, -margin),
+            (right, -margin),
+            (-margin, top),
+            (right, top),
+        ];
         let inverse = [per_x, per_y, constant];
         let always = corners.iter().all(|&(x, y)| at(&form, x, y) >= Ratio::ZERO);
         let never = corners.iter().all(|&(x, y)| at(&form, x, y) < Ratio::ZERO)
-            || corners.iter().all(|&(x, y)| !is_positive(&at(&inverse, x, y)));
+            || corners
+                .iter()
+                .all(|&(x, y)| !is_positive(&at(&inverse, x, y)));
         // Dividing by the larger coefficient leaves the border's own position: an edge that runs through a pixel
         // column exactly stays there exactly, in f32 too.
         let (fx, fy) = (abs(form[0].clone()), abs(form[1].clone()));
@@ -159,6 +215,10 @@ impl Front {
         if is_positive(&larger) {
             form = form.map(|f| f / &larger);
         }
-        Self { form, always, never }
+        Self {
+            form,
+            always,
+            never,
+        }
     }
 }

@@ -86,7 +86,9 @@ impl<R: Real> Sphere<R> {
             rho2,
             kappa2: power / c2,
             gain: distance / power,
-            seen: (rho2.approx() <= SMALL_RHO2).then(|| seen(prepared, c)).flatten(),
+            seen: (rho2.approx() <= SMALL_RHO2)
+                .then(|| seen(prepared, c))
+                .flatten(),
         })
     }
 }
@@ -112,10 +114,14 @@ fn seen<R: Real>(camera: &Camera<R>, c: V3<R>) -> Option<Seen<R>> {
         } else {
             0.0
         };
-        let offset = R::exact(column - f64::from(camera.anchor[i])) * camera.step[i] + camera.offset[i];
+        let offset =
+            R::exact(column - f64::from(camera.anchor[i])) * camera.step[i] + camera.offset[i];
         (column.abs() <= ANCHOR_LIMIT).then(|| (column as i32, offset - projected))
     };
     let (ax, ox) = axis(0, c.x)?;
     let (ay, oy) = axis(1, c.y)?;
-    Some(Seen { anchor: [ax, ay], offset: [ox, oy] })
+    Some(Seen {
+        anchor: [ax, ay],
+        offset: [ox, oy],
+    })
 }

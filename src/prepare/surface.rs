@@ -95,12 +95,26 @@ impl<R: Real> Surface<R> {
         let view = scene.camera.viewpoint;
         let scale = camera::exponent(view.z);
         match (object.surface, &object.shape) {
-            (scene::Surface::Tiled { dimension, altmaterial, xdir }, Shape::Plane { normal, point, .. }) => {
+            (
+                scene::Surface::Tiled {
+                    dimension,
+                    altmaterial,
+                    xdir,
+                },
+                Shape::Plane { normal, point, .. },
+            ) => {
                 let plain = object.material;
                 Self::Tiled(Box::new(match xdir {
                     None => {
-                        let index =
-                            |axis, d| TileIndex::new(view[axis], own(*normal, *point, axis), TILE_SHIFT, d, scale);
+                        let index = |axis, d| {
+                            TileIndex::new(
+                                view[axis],
+                                own(*normal, *point, axis),
+                                TILE_SHIFT,
+                                d,
+                                scale,
+                            )
+                        };
                         Tiled {
                             rows: None,
                             index: [index(0, dimension.x), index(2, dimension.y)],
@@ -110,7 +124,8 @@ impl<R: Real> Surface<R> {
                     // With xdir the course's program has the two materials the other way round.
                     Some(xdir) => {
                         let rows = rows(*normal, xdir);
-                        let index = |i: usize, d| TileIndex::along(rows[i].dot(V3::exact(view)), d, scale);
+                        let index =
+                            |i: usize, d| TileIndex::along(rows[i].dot(V3::exact(view)), d, scale);
                         Tiled {
                             rows: Some(rows),
                             index: [index(0, dimension.x), index(1, dimension.y)],
@@ -121,7 +136,11 @@ impl<R: Real> Surface<R> {
             }
             (
                 scene::Surface::Textured { texture, mode },
-                Shape::Plane { normal, point, extent: Some(extent) },
+                Shape::Plane {
+                    normal,
+                    point,
+                    extent: Some(extent),
+                },
             ) => {
                 let extent = Extent::new(&scene.camera, scale, *normal, *point, extent);
                 let texels = &scene.textures[texture].texels;
@@ -131,7 +150,8 @@ impl<R: Real> Surface<R> {
                     TextureMode::Fit => R::exact(f64::from(size[i])) / extent.dimensions[i],
                     // A texel is as large as a pixel of the screen.
                     TextureMode::Tile => R::ratio(
-                        &(power_of_two(scale) * ratio(f64::from(camera.pixeldim[i])) / ratio(camera.worlddim[i])),
+                        &(power_of_two(scale) * ratio(f64::from(camera.pixeldim[i]))
+                            / ratio(camera.worlddim[i])),
                     ),
                 });
                 Self::Textured(Box::new(Textured {
@@ -143,9 +163,17 @@ impl<R: Real> Surface<R> {
                 }))
             }
             (scene::Surface::Procedural { shader }, Shape::Plane { normal, point, .. }) => {
-                let index =
-                    |axis| TileIndex::new(view[axis], own(*normal, *point, axis), PPLANE_SHIFT, PPLANE_TILE, scale);
-                let from_point = |axis: usize| FromPoint::new(view[axis], *normal, *point, axis, scale);
+                let index = |axis| {
+                    TileIndex::new(
+                        view[axis],
+                        own(*normal, *point, axis),
+                        PPLANE_SHIFT,
+                        PPLANE_TILE,
+                        scale,
+                    )
+                };
+                let from_point =
+                    |axis: usize| FromPoint::new(view[axis], *normal, *point, axis, scale);
                 Self::Pplane(Box::new(Pplane {
                     shader,
                     index: [index(0), index(1), index(2)],
@@ -161,7 +189,9 @@ impl<R: Real> Surface<R> {
 /// The coordinate that every point of the plane shares, if it is perpendicular to that axis.
 fn own(normal: DVec3, point: DVec3, axis: usize) -> Option<f64> {
     let n = ratio3(normal);
-    (0..3).all(|i| i == axis || is_zero(&n[i])).then(|| point[axis])
+    (0..3)
+        .all(|i| i == axis || is_zero(&n[i]))
+        .then(|| point[axis])
 }
 
 impl<R: Real> TileIndex<R> {
@@ -169,7 +199,11 @@ impl<R: Real> TileIndex<R> {
         let index_of = |h: f64| -> Ratio { (ratio(h) + ratio(shift)) / ratio(d) };
         if let Some(own) = own {
             let whole = index_of(own).floor();
-            return Self { per_unit: R::zero(), fraction: R::exact(0.5), parity: parity(&whole) };
+            return Self {
+                per_unit: R::zero(),
+                fraction: R::exact(0.5),
+                parity: parity(&whole),
+            };
         }
         let index = index_of(view);
         let whole = index.floor();
@@ -203,7 +237,10 @@ impl<R: Real> TileIndex<R> {
 impl<R: Real> FromPoint<R> {
     fn new(view: f64, normal: DVec3, point: DVec3, axis: usize, scale: i32) -> Self {
         if own(normal, point, axis).is_some() {
-            return Self { per_unit: R::zero(), offset: R::zero() };
+            return Self {
+                per_unit: R::zero(),
+                offset: R::zero(),
+            };
         }
         Self {
             per_unit: R::ratio(&power_of_two(scale)),

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use dashu_ratio::RBig;
 use glam::DVec3;
 
-use super::bvh::{self, Bvh, Bounds};
+use super::bvh::{self, Bounds, Bvh};
 use super::exact::{dot, is_zero, power_of_two, ratio, ratio3, two_to};
 use super::{Light, plane::Extent};
 use crate::real::{Real, V3};
@@ -84,19 +84,31 @@ impl<R: Real> World<R> {
             planes: Vec::new(),
             spheres: Vec::new(),
             bvh: None,
-            lights: scene.lights.iter().map(|light| Light::new(view, scale, light)).collect(),
+            lights: scene
+                .lights
+                .iter()
+                .map(|light| Light::new(view, scale, light))
+                .collect(),
             groups: Vec::with_capacity(scene.objects.len()),
             places: vec![0; scene.objects.len()],
             highest: R::ratio(
-                &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z)) / power_of_two(scale)),
+                &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z))
+                    / power_of_two(scale)),
             ),
         };
         for (object, entity) in scene.objects.iter().enumerate() {
             world.groups.push(groups.of(&entity.shape));
             match entity.shape {
-                Shape::Plane { normal, point, extent } => {
-                    let extent = extent.map(|e| Extent::new(&scene.camera, scale, normal, point, &e));
-                    world.planes.push(plane(scene, scale, object, normal, point, extent));
+                Shape::Plane {
+                    normal,
+                    point,
+                    extent,
+                } => {
+                    let extent =
+                        extent.map(|e| Extent::new(&scene.camera, scale, normal, point, &e));
+                    world
+                        .planes
+                        .push(plane(scene, scale, object, normal, point, extent));
                 }
                 Shape::Sphere { center, radius } => world.spheres.push(WorldSphere {
                     object,
@@ -146,7 +158,11 @@ fn plane<R: Real>(
     });
     WorldPlane {
         object,
-        normal: V3::new(direction.x / length, direction.y / length, direction.z / length),
+        normal: V3::new(
+            direction.x / length,
+            direction.y / length,
+            direction.z / length,
+        ),
         offset: offset / length,
         own: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
         extent,
@@ -170,7 +186,9 @@ fn lights_on_sphere(scene: &Scene, center: DVec3, radius: f64) -> Vec<usize> {
             dot(&d, &d) == &r * &r
         }
     };
-    (0..scene.lights.len()).filter(|&i| on(&scene.lights[i])).collect()
+    (0..scene.lights.len())
+        .filter(|&i| on(&scene.lights[i]))
+        .collect()
 }
 
 /// Numbers for surfaces, the same for the same point set.
@@ -192,14 +210,22 @@ impl Groups {
             Shape::Plane { normal, point, .. } => {
                 let n = ratio3(normal);
                 // N·X = N·Q with the first component of N that is not 0 scaled to 1.
-                let lead = n.iter().find(|c| !is_zero(c)).cloned().unwrap_or(super::exact::Ratio::ONE);
+                let lead = n
+                    .iter()
+                    .find(|c| !is_zero(c))
+                    .cloned()
+                    .unwrap_or(super::exact::Ratio::ONE);
                 let offset = dot(&n, &ratio3(point)) / &lead;
                 let [x, y, z] = n.map(|c| (c / &lead).canonicalize());
-                *self.planes.entry([x, y, z, offset.canonicalize()]).or_insert_with(&mut new)
+                *self
+                    .planes
+                    .entry([x, y, z, offset.canonicalize()])
+                    .or_insert_with(&mut new)
             }
             Shape::Sphere { center, radius } => {
                 // Adding 0 makes −0 and 0 the same.
-                let key = [center.x + 0.0, center.y + 0.0, center.z + 0.0, radius].map(f64::to_bits);
+                let key =
+                    [center.x + 0.0, center.y + 0.0, center.z + 0.0, radius].map(f64::to_bits);
                 *self.spheres.entry(key).or_insert_with(&mut new)
             }
         }
@@ -211,7 +237,11 @@ mod tests {
     use super::*;
 
     fn plane(normal: [f64; 3], point: [f64; 3]) -> Shape {
-        Shape::Plane { normal: normal.into(), point: point.into(), extent: None }
+        Shape::Plane {
+            normal: normal.into(),
+            point: point.into(),
+            extent: None,
+        }
     }
 
     fn same_group(a: &Shape, b: &Shape) -> bool {
@@ -222,10 +252,22 @@ mod tests {
     #[test]
     fn coincident_surfaces_share_a_group() {
         let wall = plane([3.0, 0.0, 1.0], [0.0, 0.0, 0.0]);
-        assert!(same_group(&wall, &plane([-6.0, 0.0, -2.0], [1.0, 7.0, -3.0])));
-        assert!(!same_group(&wall, &plane([-6.0, 0.0, -2.0], [1.0, 7.0, -3.0 - 1e-15])));
-        assert!(!same_group(&wall, &plane([3.0, 1e-300, 1.0], [0.0, 0.0, 0.0])));
-        let ball = |z: f64| Shape::Sphere { center: DVec3::new(0.0, 1.0, z), radius: 2.0 };
+        assert!(same_group(
+            &wall,
+            &plane([-6.0, 0.0, -2.0], [1.0, 7.0, -3.0])
+        ));
+        assert!(!same_group(
+            &wall,
+            &plane([-6.0, 0.0, -2.0], [1.0, 7.0, -3.0 - 1e-15])
+        ));
+        assert!(!same_group(
+            &wall,
+            &plane([3.0, 1e-300, 1.0], [0.0, 0.0, 0.0])
+        ));
+        let ball = |z: f64| Shape::Sphere {
+            center: DVec3::new(0.0, 1.0, z),
+            radius: 2.0,
+        };
         assert!(same_group(&ball(0.0), &ball(-0.0)));
         assert!(!same_group(&ball(0.0), &ball(f64::MIN_POSITIVE)));
     }

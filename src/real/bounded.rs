@@ -32,7 +32,10 @@ impl Bounded {
     /// A computed value whose operands' errors contribute `carried`.
     #[inline(always)]
     fn rounded(value: f64, carried: f64) -> Self {
-        Self { value, error: carried + (U * value.abs() + TINY) }
+        Self {
+            value,
+            error: carried + (U * value.abs() + TINY),
+        }
     }
 }
 
@@ -56,7 +59,8 @@ impl Mul for Bounded {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        let carried = self.value.abs() * o.error + o.value.abs() * self.error + self.error * o.error;
+        let carried =
+            self.value.abs() * o.error + o.value.abs() * self.error + self.error * o.error;
         Self::rounded(self.value * o.value, carried)
     }
 }
@@ -68,7 +72,10 @@ impl Div for Bounded {
         let value = self.value / o.value;
         let least = o.value.abs() - o.error;
         if least <= 0.0 {
-            return Self { value, error: f64::INFINITY };
+            return Self {
+                value,
+                error: f64::INFINITY,
+            };
         }
         Self::rounded(value, (self.error + value.abs() * o.error) / least)
     }
@@ -78,7 +85,10 @@ impl Neg for Bounded {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, error: self.error }
+        Self {
+            value: -self.value,
+            error: self.error,
+        }
     }
 }
 
@@ -97,7 +107,11 @@ impl Real for Bounded {
     fn sqrt(self) -> Self {
         // √(a ± e) lies within e/√a of √a, and within √e where a is that small.
         let value = self.value.max(0.0).sqrt();
-        let carried = if self.value > self.error { self.error / value } else { (2.0 * self.error).sqrt() };
+        let carried = if self.value > self.error {
+            self.error / value
+        } else {
+            (2.0 * self.error).sqrt()
+        };
         Self::rounded(value, carried)
     }
 
@@ -107,9 +121,15 @@ impl Real for Bounded {
         let value = self.value.powf(exponent);
         let least = self.value - self.error;
         if least <= 0.0 {
-            return Self { value, error: f64::INFINITY };
+            return Self {
+                value,
+                error: f64::INFINITY,
+            };
         }
-        let slope = exponent.abs() * value.max(least.powf(exponent)).max((self.value + self.error).powf(exponent));
+        let slope = exponent.abs()
+            * value
+                .max(least.powf(exponent))
+                .max((self.value + self.error).powf(exponent));
         Self::rounded(value, slope * self.error / least + 8.0 * U * value)
     }
 
@@ -117,12 +137,23 @@ impl Real for Bounded {
     fn cos_degrees(angle: f64) -> Self {
         let value = f64::cos_degrees(angle);
         let exact = [60.0, 90.0, 120.0, 180.0].contains(&angle);
-        if exact { Self::exact(value) } else { Self { value, error: 8.0 * U } }
+        if exact {
+            Self::exact(value)
+        } else {
+            Self {
+                value,
+                error: 8.0 * U,
+            }
+        }
     }
 
     #[inline(always)]
     fn sign(self) -> Result<Ordering, Undecided> {
-        if self.value.abs() > self.error * GROW || self.error == 0.0 { self.value.sign() } else { Err(Undecided) }
+        if self.value.abs() > self.error * GROW || self.error == 0.0 {
+            self.value.sign()
+        } else {
+            Err(Undecided)
+        }
     }
 
     #[inline(always)]
@@ -133,7 +164,11 @@ impl Real for Bounded {
         }
         // Both differences are exact, or as good as: they are at most 1, and value has the bits.
         let margin = self.error * GROW;
-        if self.value - low > margin && low + 1.0 - self.value > margin { Ok(low) } else { Err(Undecided) }
+        if self.value - low > margin && low + 1.0 - self.value > margin {
+            Ok(low)
+        } else {
+            Err(Undecided)
+        }
     }
 
     #[inline(always)]
@@ -152,8 +187,11 @@ mod tests {
     fn the_bound_contains_the_exact_result() {
         let mut state = 1_u64;
         let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 11) as f64 / 9_007_199_254_740_992.0 - 0.5) * ((state % 13) as f64 - 6.0).exp2()
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 11) as f64 / 9_007_199_254_740_992.0 - 0.5)
+                * ((state % 13) as f64 - 6.0).exp2()
         };
         let mut worst: f64 = 0.0;
         for _ in 0..20_000 {

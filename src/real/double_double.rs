@@ -51,13 +51,27 @@ impl DoubleDouble {
         let (hi, lo) = two_sum(hi, lo);
         // The bound's own roundings are covered by a part in 2⁴⁰; underflow by the smallest normal number.
         let error = (carried + U * hi.abs()) * (1.0 + 1e-12) + f64::MIN_POSITIVE;
-        Self { hi, lo, error: if (hi + error).is_nan() { f64::INFINITY } else { error }, fine }
+        Self {
+            hi,
+            lo,
+            error: if (hi + error).is_nan() {
+                f64::INFINITY
+            } else {
+                error
+            },
+            fine,
+        }
     }
 
     /// Near to value, with what f64's own functions leave of its accuracy.
     #[inline]
     fn coarse(value: f64, error: f64) -> Self {
-        Self { hi: value, lo: 0.0, error, fine: false }
+        Self {
+            hi: value,
+            lo: 0.0,
+            error,
+            fine: false,
+        }
     }
 }
 
@@ -71,7 +85,7 @@ impl Add for DoubleDouble {
         let error = self.error + o.error;
         // Where errors have grown, as they do from mirror to mirror, a small difference says nothing about a tie.
         // (Terms that are 0 but for rounding are measured against the viewpoint's distance, which is about 1.)
-        let known = error <= PRESUMED * (self.hi.abs() + o.hi.abs()).max(1e-9);
+        let known = error <= PRESUMED * (self.hi.abs() + o.hi.abs()).max(1.0);
         Self::new(s, e + f, error, known && self.fine && o.fine)
     }
 }
@@ -108,7 +122,12 @@ impl Div for DoubleDouble {
         let (p, e) = two_product(q, o.hi);
         let remainder = (self.hi - p) - e + self.lo - q * o.lo;
         let carried = (self.error + q.abs() * o.error) / least;
-        Self::new(q, remainder / o.hi, carried * (1.0 + 1e-15), self.fine && o.fine)
+        Self::new(
+            q,
+            remainder / o.hi,
+            carried * (1.0 + 1e-15),
+            self.fine && o.fine,
+        )
     }
 }
 
@@ -116,14 +135,23 @@ impl Neg for DoubleDouble {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self { hi: -self.hi, lo: -self.lo, ..self }
+        Self {
+            hi: -self.hi,
+            lo: -self.lo,
+            ..self
+        }
     }
 }
 
 impl Real for DoubleDouble {
     #[inline]
     fn exact(value: f64) -> Self {
-        Self { hi: value, lo: 0.0, error: 0.0, fine: true }
+        Self {
+            hi: value,
+            lo: 0.0,
+            error: 0.0,
+            fine: true,
+        }
     }
 
     #[inline]
@@ -138,7 +166,11 @@ impl Real for DoubleDouble {
         let root = self.hi.max(0.0).sqrt();
         if self.hi <= self.error {
             // √(a ± e) lies within √(a + e) of 0 and of √a.
-            return Self { error: (2.0 * self.error).sqrt(), ..Self::coarse(root, 0.0) }.with_fine(self.fine);
+            return Self {
+                error: (2.0 * self.error).sqrt(),
+                ..Self::coarse(root, 0.0)
+            }
+            .with_fine(self.fine);
         }
         // One Newton step from the f64 root: the remainder over twice the root.
         let (p, e) = two_product(root, root);
@@ -162,14 +194,21 @@ impl Real for DoubleDouble {
             return result;
         }
         let value = self.hi.powf(exponent);
-        Self::coarse(value, value * (exponent * (self.error / self.hi + 1e-15) + 1e-15))
+        Self::coarse(
+            value,
+            value * (exponent * (self.error / self.hi + 1e-15) + 1e-15),
+        )
     }
 
     #[inline]
     fn cos_degrees(angle: f64) -> Self {
         let value = f64::cos_degrees(angle);
         let exact = [60.0, 90.0, 120.0, 180.0].contains(&angle);
-        if exact { Self::exact(value) } else { Self::coarse(value, 1e-15) }
+        if exact {
+            Self::exact(value)
+        } else {
+            Self::coarse(value, 1e-15)
+        }
     }
 
     #[inline]
@@ -191,8 +230,13 @@ impl Real for DoubleDouble {
         if above.is_nan() {
             return Err(Undecided);
         }
-        let presumed = self.fine && self.error <= PRESUMED * self.hi.abs().max(1.0) && -above <= self.error;
-        Ok(if above < 0.0 && !presumed { nearest - 1.0 } else { nearest })
+        let presumed =
+            self.fine && self.error <= PRESUMED * self.hi.abs().max(1.0) && -above <= self.error;
+        Ok(if above < 0.0 && !presumed {
+            nearest - 1.0
+        } else {
+            nearest
+        })
     }
 
     #[inline]
@@ -221,13 +265,20 @@ mod tests {
     fn the_bound_contains_the_exact_result() {
         let mut state = 7_u64;
         let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 11) as f64 / 9_007_199_254_740_992.0 - 0.5) * ((state % 13) as f64 - 6.0).exp2()
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 11) as f64 / 9_007_199_254_740_992.0 - 0.5)
+                * ((state % 13) as f64 - 6.0).exp2()
         };
         let mut widest: f64 = 0.0;
         for _ in 0..5000 {
             let (a, b, c) = (next(), next(), next());
-            let (x, y, z) = (DoubleDouble::exact(a), DoubleDouble::exact(b), DoubleDouble::exact(c));
+            let (x, y, z) = (
+                DoubleDouble::exact(a),
+                DoubleDouble::exact(b),
+                DoubleDouble::exact(c),
+            );
             let (ra, rb, rc) = (ratio(a), ratio(b), ratio(c));
             let value = x / y + y / z - x * z;
             let exact = &ra / &rb + &rb / &rc - &ra * &rc;

@@ -28,7 +28,12 @@ pub(super) struct Job<'a> {
 
 impl Job<'_> {
     /// Renders on the GPU; pixels that it leaves undecided are traced on the CPU.
-    pub(super) fn on_gpu(&self, gpu: &Gpu, emit: &mut Emit<'_>, report: &mut Report) -> Result<(), Error> {
+    pub(super) fn on_gpu(
+        &self,
+        gpu: &Gpu,
+        emit: &mut Emit<'_>,
+        report: &mut Report,
+    ) -> Result<(), Error> {
         let start = Instant::now();
         let packed = Packed::new(&Prepared::new(self.scene, self.view));
         let (found, allowed) = (packed.loop_iterations(), compose::LOOP_ITERATIONS);
@@ -42,8 +47,12 @@ impl Job<'_> {
         let stages = OnceLock::new();
         let refine = |x: u32, y: u32| {
             let row = self.jitter.row(y);
-            let sampling = self.jitter.pixel(row.as_deref(), self.width as usize, x as usize);
-            stages.get_or_init(|| Stages::new(self.scene, self.view)).trace(&self.limits, sampling, x, y)
+            let sampling = self
+                .jitter
+                .pixel(row.as_deref(), self.width as usize, x as usize);
+            stages
+                .get_or_init(|| Stages::new(self.scene, self.view))
+                .trace(&self.limits, sampling, x, y)
         };
         let frame = bands::Frame {
             width: self.width,
@@ -87,7 +96,14 @@ impl Job<'_> {
             let band = end - height..end;
             let values = self.settings.values;
             let band = pool.install(|| {
-                make_band(&stages, &self.limits, &self.jitter, self.width, band, values)
+                make_band(
+                    &stages,
+                    &self.limits,
+                    &self.jitter,
+                    self.width,
+                    band,
+                    values,
+                )
             })?;
             let seconds = kernel.elapsed().as_secs_f64();
             report.seconds.kernel += seconds;
@@ -106,5 +122,7 @@ impl Job<'_> {
 fn next_height(height: u32, seconds: f64, width: u32) -> u32 {
     let ideal = f64::from(height) * 0.25 / seconds.max(1e-6);
     let most = ((4 << 20) / width).max(1);
-    (ideal as u32).clamp(height / 4, height.saturating_mul(4)).clamp(1, most)
+    (ideal as u32)
+        .clamp(height / 4, height.saturating_mul(4))
+        .clamp(1, most)
 }

@@ -70,8 +70,15 @@ impl Settings {
 
     /// The limits of a sample: where the values themselves are wanted, those above 1 count too.
     pub fn sample_limits(&self) -> Limits {
-        let enough = if self.values { f64::INFINITY } else { f64::from(self.samples) };
-        Limits { enough, ..self.limits }
+        let enough = if self.values {
+            f64::INFINITY
+        } else {
+            f64::from(self.samples)
+        };
+        Limits {
+            enough,
+            ..self.limits
+        }
     }
 }
 
@@ -88,7 +95,9 @@ pub enum Spread {
 
 /// A pixel that needs more rays than allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("pixel ({x}, {y}) needs more than {max_rays} rays for one sample: mirrors and transparent surfaces multiply them; --max-rays allows more, --max-path fewer")]
+#[error(
+    "pixel ({x}, {y}) needs more than {max_rays} rays for one sample: mirrors and transparent surfaces multiply them; --max-rays allows more, --max-path fewer"
+)]
 pub struct PixelFault {
     /// Column, from the left.
     pub x: u32,
@@ -183,7 +192,9 @@ pub struct Seconds {
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The rows asked for are not of the picture.
-    #[error("rows {start}..{end} are not rows of a picture {height} high: rows count from 0 at the bottom, the end not included")]
+    #[error(
+        "rows {start}..{end} are not rows of a picture {height} high: rows count from 0 at the bottom, the end not included"
+    )]
     Rows {
         /// First row.
         start: u32,
@@ -233,7 +244,11 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     let [width, height] = scene.camera.pixeldim;
     let rows = settings.rows.clone().unwrap_or(0..height);
     if rows.is_empty() || rows.end > height {
-        return Err(Error::Rows { start: rows.start, end: rows.end, height });
+        return Err(Error::Rows {
+            start: rows.start,
+            end: rows.end,
+            height,
+        });
     }
     let mut report = Report {
         width,

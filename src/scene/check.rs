@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::draft::Draft;
 use super::lex::{self, Kind as Lexeme};
 use super::parse::{Block, Parser};
-use super::table::{self, Entity, Kind, Take};
+use super::table::{self, Attribute, Entity, Kind, Take};
 use crate::diagnostic::Diagnostic;
 
 impl Parser<'_> {
@@ -49,12 +49,17 @@ impl Parser<'_> {
         let rows = block.entity.rows().zip(&block.given);
         let missing: Vec<_> = rows
             .filter(|(row, given)| row.required && given.is_none())
-            .map(|(row, _)| format!("`{}`", row.name))
+            .map(|(row, _)| row)
             .collect();
         if missing.is_empty() {
             return;
         }
-        let missing = missing.join(", ");
+        let list = |text: fn(&Attribute) -> String| {
+            let texts: Vec<_> = missing.iter().map(|row| text(row)).collect();
+            texts.join(", ")
+        };
+        let examples = list(|row| format!("`{} {}`", row.name, row.example));
+        let missing = list(|row| format!("`{}`", row.name));
         match block.stranger {
             // Most likely the stranger is what is missing: one mistake, one message.
             Some(stranger) => {
@@ -67,7 +72,8 @@ impl Parser<'_> {
             None => {
                 let error =
                     Diagnostic::new(title.clone(), format!("this `{kind}` lacks {missing}"));
-                self.errors.report(error);
+                self.errors
+                    .report(error.help(format!("add {examples}, for example")));
             }
         }
     }

@@ -57,10 +57,21 @@ pub(super) fn parse_integer(token: &[u8]) -> Result<i64, NumberError> {
 pub(super) fn looks_numeric(token: &[u8]) -> bool {
     let (_, digits) = split_sign(token);
     match digits {
+        _ if split_dash(token).is_some() => true,
         [b'0'..=b'9', ..] | [b'.' | b',', b'0'..=b'9', ..] => true,
         [] => true,
         _ => is_not_finite(digits) || digits.len() < token.len(),
     }
+}
+
+/// A minus sign or dash of a word processor in front of a digit or point, and what follows it.
+pub(super) fn split_dash(token: &[u8]) -> Option<(char, &[u8])> {
+    ['\u{2212}', '\u{2013}', '\u{2014}']
+        .into_iter()
+        .find_map(|dash| {
+            let digits = token.strip_prefix(dash.encode_utf8(&mut [0; 4]).as_bytes())?;
+            matches!(digits, [b'0'..=b'9' | b'.', ..]).then_some((dash, digits))
+        })
 }
 
 fn split_sign(token: &[u8]) -> (bool, &[u8]) {

@@ -4,12 +4,30 @@
 use super::lex::{Kind as Lexeme, Token};
 use super::names::nearest;
 use super::parse::Parser;
+use super::slips;
 use super::table::{self, ENTITIES, Entity, Kind, UNSUPPORTED};
 use crate::diagnostic::Diagnostic;
 
 impl<'t> Parser<'t> {
     pub(super) fn unknown_entity(&mut self, head: Token<'t>) {
         let word = head.quoted();
+        if slips::is_comment(head.text) {
+            let error = Diagnostic::new(head.span(), format!("there is no entity {word}"));
+            self.errors.report(error.help(slips::COMMENT_HELP));
+            self.skip_comment(head, false);
+            return;
+        }
+        if let Some(error) = slips::strange_space_error(head) {
+            self.errors.report(error);
+            for word in slips::words_of(head) {
+                self.excuse(word);
+                if table::find(word.text).is_some_and(|entity| entity.kind == Kind::Camera) {
+                    self.camera.get_or_insert(word.span());
+                }
+            }
+            self.skip_unknown(head);
+            return;
+        }
         let meant = nearest(
             head.text,
             ENTITIES.iter().map(|entity| entity.name.as_bytes()),
@@ -43,6 +61,11 @@ impl<'t> Parser<'t> {
         if meant.is_some_and(|meant| meant.kind == Kind::Camera) {
             self.camera.get_or_insert(head.span());
         }
+        self.skip_unknown(head);
+    }
+
+    /// Skips the name and the block of an entity that was not understood.
+    fn skip_unknown(&mut self, head: Token<'t>) {
         let [first, second, _] = self.window;
         if first.kind == Lexeme::Open {
             // Perhaps its name, and the type is missing.

@@ -58,6 +58,8 @@ pub(super) struct Attribute {
     pub(super) take: Take,
     /// What the values must keep.
     pub(super) limit: Limit,
+    /// Values to show where a required one is missing.
+    pub(super) example: &'static str,
     /// Is it an error to leave it out?
     pub(super) required: bool,
 }
@@ -107,12 +109,13 @@ pub(super) struct Entity {
     pub(super) relation: Option<Relation>,
 }
 
-const fn row(name: &'static str, take: Take, limit: Limit) -> Attribute {
+const fn row(name: &'static str, example: &'static str, take: Take, limit: Limit) -> Attribute {
     Attribute {
         name,
         other_name: None,
         take,
         limit,
+        example,
         required: true,
     }
 }
@@ -123,23 +126,24 @@ const fn optional(name: &'static str, take: Take, limit: Limit) -> Attribute {
         other_name: None,
         take,
         limit,
+        example: "",
         required: false,
     }
 }
 
 const CAMERA: &[Attribute] = &[
     row(
-        "pixeldim",
+        "pixeldim", "640 480",
         Take::Integers(2, |d| &mut d.pixeldim),
         Limit::Pixels,
     ),
     row(
-        "worlddim",
+        "worlddim", "8 6",
         Take::Numbers(2, |d| &mut d.worlddim),
         Limit::Positive,
     ),
     row(
-        "viewpoint",
+        "viewpoint", "4 3 6",
         Take::Numbers(3, |d| &mut d.viewpoint),
         Limit::InFront,
     ),
@@ -173,27 +177,27 @@ const MATERIAL: &[Attribute] = &[
     ),
 ];
 
-const TEXTURE: &[Attribute] = &[row("filename", Take::Picture, Limit::None)];
+const TEXTURE: &[Attribute] = &[row("filename", "wood.ppm", Take::Picture, Limit::None)];
 
 const OBJECT: &[Attribute] = &[row(
-    "material",
+    "material", "name",
     Take::Material(|d| &mut d.material),
     Limit::None,
 )];
 
 const PLANE: &[Attribute] = &[
     row(
-        "normal",
+        "normal", "0 1 0",
         Take::Numbers(3, |d| &mut d.normal),
         Limit::NotZero,
     ),
-    row("point", Take::Numbers(3, |d| &mut d.point), Limit::None),
+    row("point", "0 0 0", Take::Numbers(3, |d| &mut d.point), Limit::None),
 ];
 
 const SPHERE: &[Attribute] = &[
-    row("center", Take::Numbers(3, |d| &mut d.center), Limit::None),
+    row("center", "0 0 0", Take::Numbers(3, |d| &mut d.center), Limit::None),
     row(
-        "radius",
+        "radius", "1",
         Take::Numbers(1, |d| &mut d.radius),
         Limit::Positive,
     ),
@@ -201,14 +205,14 @@ const SPHERE: &[Attribute] = &[
 
 const TILED: &[Attribute] = &[
     row(
-        "altmaterial",
+        "altmaterial", "name",
         Take::Material(|d| &mut d.altmaterial),
         Limit::None,
     ),
     Attribute {
         other_name: Some("dimensions"),
         ..row(
-            "dimension",
+            "dimension", "1 1",
             Take::Numbers(2, |d| &mut d.dimension),
             Limit::Positive,
         )
@@ -221,52 +225,52 @@ const TILED: &[Attribute] = &[
 ];
 
 const PROCEDURAL_PLANE: &[Attribute] = &[row(
-    "shader",
+    "shader", "0",
     Take::Integers(1, |d| &mut d.shader),
     Limit::Below(PPLANE_SHADERS),
 )];
 
 const PROCEDURAL_SPHERE: &[Attribute] = &[row(
-    "shader",
+    "shader", "0",
     Take::Integers(1, |d| &mut d.shader),
     Limit::Below(PSPHERE_SHADERS),
 )];
 
 const FINITE: &[Attribute] = &[
     row(
-        "xdir",
+        "xdir", "1 0 0",
         Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
         Limit::NotZero,
     ),
     row(
-        "dimensions",
+        "dimensions", "1 1",
         Take::Numbers(2, |d| &mut d.dimension),
         Limit::Positive,
     ),
 ];
 
 const TEXTURED: &[Attribute] = &[
-    row("texname", Take::Texture(|d| &mut d.texture), Limit::None),
-    row("mode", Take::Integers(1, |d| &mut d.mode), Limit::Below(2)),
+    row("texname", "name", Take::Texture(|d| &mut d.texture), Limit::None),
+    row("mode", "0", Take::Integers(1, |d| &mut d.mode), Limit::Below(2)),
 ];
 
 const LIGHT: &[Attribute] = &[
     row(
-        "location",
+        "location", "0 5 0",
         Take::Numbers(3, |d| &mut d.location),
         Limit::None,
     ),
     row(
-        "emissivity",
+        "emissivity", "5 5 5",
         Take::Numbers(3, |d| &mut d.emissivity),
         Limit::NotNegative,
     ),
 ];
 
 const SPOT: &[Attribute] = &[
-    row("point", Take::Numbers(3, |d| &mut d.point), Limit::None),
+    row("point", "0 0 0", Take::Numbers(3, |d| &mut d.point), Limit::None),
     row(
-        "theta",
+        "theta", "30",
         Take::Numbers(1, |d| &mut d.theta),
         Limit::HalfAngle,
     ),
@@ -398,6 +402,11 @@ impl Entity {
 }
 
 impl Attribute {
+    /// Is it a colour: three numbers of which none is negative?
+    pub(super) fn is_colour(&self) -> bool {
+        matches!(self.take, Take::Numbers(3, _)) && self.limit == Limit::NotNegative
+    }
+
     fn is_called(&self, name: &[u8]) -> bool {
         self.name.as_bytes() == name
             || self
@@ -416,6 +425,24 @@ mod tests {
             assert!(std::ptr::eq(of(entity.kind), entity), "{}", entity.name);
             assert!(std::ptr::eq(find(entity.name.as_bytes()).unwrap(), entity));
             assert!(!UNSUPPORTED.contains(&entity.name));
+        }
+    }
+
+    #[test]
+    fn examples_are_right() {
+        for row in ENTITIES.iter().flat_map(Entity::rows) {
+            let words: Vec<_> = row.example.split(' ').collect();
+            let (count, numbers) = match row.take {
+                _ if !row.required => continue,
+                Take::Numbers(count, _) | Take::Integers(count, _) => (count, true),
+                Take::Spread(_) => (3, true),
+                Take::Material(_) | Take::Texture(_) | Take::Picture => (1, false),
+            };
+            assert_eq!(words.len(), count, "{}", row.name);
+            if numbers {
+                let values: Vec<_> = words.iter().map(|word| word.parse().unwrap()).collect();
+                assert!(row.limit.broken(&values).is_empty(), "{}", row.name);
+            }
         }
     }
 

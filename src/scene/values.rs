@@ -8,6 +8,7 @@ use super::lex::{Kind as Lexeme, Token};
 use super::names::nearest;
 use super::number::{self, NumberError, looks_numeric};
 use super::parse::{Block, Parser};
+use super::slips;
 use super::table::{Attribute, ENTITIES, Entity, Take};
 use crate::diagnostic::Diagnostic;
 
@@ -64,6 +65,10 @@ impl<'t> Parser<'t> {
     ) -> Option<(usize, &'static Attribute)> {
         let entity = block.entity;
         let word = key.quoted();
+        if let Some(error) = slips::strange_space_error(key) {
+            self.errors.report(error);
+            return self.spaced_attribute(block, key);
+        }
         let meant = meant_row(entity, key.text);
         if looks_numeric(key.text) {
             let message = format!(
@@ -73,6 +78,13 @@ impl<'t> Parser<'t> {
             self.errors
                 .report(Diagnostic::new(key.span(), message).help(attributes_of(entity)));
             self.skip_numbers();
+            return None;
+        }
+        if slips::is_comment(key.text) {
+            let message = format!("`{}` has no attribute {word}", entity.name);
+            self.errors
+                .report(Diagnostic::new(key.span(), message).help(slips::COMMENT_HELP));
+            self.skip_comment(key, true);
             return None;
         }
         let owners: Vec<_> = ENTITIES
@@ -86,7 +98,8 @@ impl<'t> Parser<'t> {
         );
         let place = self.errors.report(match meant {
             Some((_, row)) => error.help(format!("did you mean `{}`?", row.name)),
-            None if owners.is_empty() => error.help(attributes_of(entity)),
+            None if owners.is_empty() => error
+                .help(colours_of(entity, key.text).unwrap_or_else(|| attributes_of(entity))),
             None => error.help(format!(
                 "{word} belongs to {}; {}",
                 owners.join(", "),
@@ -98,6 +111,23 @@ impl<'t> Parser<'t> {
             self.skip_strange_values(entity);
         }
         meant
+    }
+
+    /// Goes on behind an attribute with a space in it that is not ASCII's, which was said: returns its row where
+    /// nothing else is in the token, otherwise skips its values.
+    fn spaced_attribute(
+        &mut self,
+        block: &mut Block,
+        key: Token<'t>,
+    ) -> Option<(usize, &'static Attribute)> {
+        let mut words = slips::words_of(key);
+        let found = block.entity.row(words.next()?.text);
+        if found.is_some_and(|(index, _)| block.given[index].is_none()) && words.next().is_none() {
+            return found;
+        }
+        give_rows_in(block, key);
+        self.skip_numbers();
+        None
     }
 
     fn skip_numbers(&mut self) {
@@ -122,6 +152,7 @@ impl<'t> Parser<'t> {
             second.is_word() && looks_numeric(second.text) && !looks_numeric(first.text);
         first.is_word()
             && !starts_attribute
+            && !slips::is_comment(first.text)
             && entity.row(first.text).is_none()
             && meant_row(entity, first.text).is_none()
             && !self.starts_entity(Some(entity))
@@ -137,7 +168,7 @@ impl<'t> Parser<'t> {
     }
 
     /// Is the next token the first of its line?
-    fn starts_line(&self) -> bool {
+    pub(super) fn starts_line(&self) -> bool {
         self.text[self.last_end..self.window[0].start]
             .iter()
             .any(|byte| matches!(byte, b'\n' | b'\r'))
@@ -264,6 +295,7 @@ impl<'t> Parser<'t> {
         let max = counts.end - 1;
         let mut extra = 0;
         let mut extra_start = 0;
+        let mut spaced = false;
         while self.window[0].kind == Lexeme::Word {
             let token = self.window[0];
             let count = numbers.tokens.len();
@@ -274,6 +306,12 @@ impl<'t> Parser<'t> {
                 break;
             }
             self.bump();
+            if let Some(error) = slips::strange_space_error(token) {
+                self.errors.report(error);
+                give_rows_in(block, token);
+                spaced = true;
+                continue;
+            }
             if count == max {
                 extra_start = if extra == 0 { token.start } else { extra_start };
                 extra += 1;
@@ -287,6 +325,10 @@ impl<'t> Parser<'t> {
                     numbers.good = false;
                 }
             }
+        }
+        // How many were meant is not known where one token held more than one.
+        if spaced {
+            return false;
         }
         let found = numbers.tokens.len() + extra;
         // A row of one or three numbers does not take two.
@@ -307,7 +349,15 @@ impl<'t> Parser<'t> {
             let label = if extra > 0 { "too many" } else { "too few" };
             let error =
                 Diagnostic::new(span, format!("`{}` takes {takes}, found {found}", row.name));
-            self.errors.report(error.label(label));
+            let error = error.label(label);
+            self.errors.report(match (&numbers.tokens[..], extra) {
+                ([one], 0) if row.is_colour() && numbers.good => {
+                    let one = String::from_utf8_lossy(one.text);
+                    error.help(format!("a colour is red, green, blue: `{one} {one} {one}`"))
+                }
+                (_, 0) if row.is_colour() => error.help("a colour is red, green, blue"),
+                _ => error,
+            });
             return false;
         }
         if !numbers.good {
@@ -347,6 +397,35 @@ fn meant_row(entity: &'static Entity, word: &[u8]) -> Option<(usize, &'static At
     nearest(word, entity.rows().map(|row| row.name.as_bytes())).and_then(|name| entity.row(name))
 }
 
+/// Notes the attributes that were meant in a token with spaces that are not ASCII's: they are not missing.
+fn give_rows_in(block: &mut Block, token: Token<'_>) {
+    for word in slips::words_of(token) {
+        if let Some((index, _)) = block.entity.row(word.text) {
+            block.given[index].get_or_insert(word.span());
+        }
+    }
+}
+
+/// What to write for a word that means colour.
+fn colours_of(entity: &Entity, word: &[u8]) -> Option<String> {
+    if !word.eq_ignore_ascii_case(b"color") && !word.eq_ignore_ascii_case(b"colour") {
+        return None;
+    }
+    let names: Vec<_> = entity
+        .rows()
+        .filter(|row| row.is_colour())
+        .map(|row| format!("`{}`", row.name))
+        .collect();
+    match &names[..] {
+        [] => None,
+        [one] => Some(format!("colour is {one}: red, green, blue")),
+        _ => Some(format!(
+            "colour is {}, each red, green, blue",
+            names.join(" and ")
+        )),
+    }
+}
+
 fn attributes_of(entity: &Entity) -> String {
     let names: Vec<_> = entity.rows().map(|row| format!("`{}`", row.name)).collect();
     format!("`{}` has {}", entity.name, names.join(", "))
@@ -372,7 +451,8 @@ fn read(token: Token<'_>, whole: bool) -> Result<f64, Box<Diagnostic>> {
         _ => format!("{word} is not a number"),
     };
     let error = Diagnostic::new(token.span(), error);
-    let comma = token.text.contains(&b',');
-    let help = "numbers have a decimal point, and white space between them";
-    Err(Box::new(if comma { error.help(help) } else { error }))
+    Err(Box::new(match slips::number_help(token.text, whole) {
+        Some(help) => error.help(help),
+        None => error,
+    }))
 }

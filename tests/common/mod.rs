@@ -16,8 +16,14 @@ pub(crate) fn scenes() -> PathBuf {
 pub(crate) fn good_scenes() -> Vec<PathBuf> {
     let mut found = Vec::new();
     for folder in ["notes", "gallery", "known", "hard", "lit"] {
-        let Ok(entries) = std::fs::read_dir(scenes().join(folder)) else { panic!("no folder scenes/{folder}") };
-        found.extend(entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "txt")));
+        let Ok(entries) = std::fs::read_dir(scenes().join(folder)) else {
+            panic!("no folder scenes/{folder}")
+        };
+        found.extend(
+            entries
+                .map(|e| e.unwrap().path())
+                .filter(|p| p.extension().is_some_and(|e| e == "txt")),
+        );
     }
     found.sort();
     assert!(found.len() > 100, "only {} scenes found", found.len());
@@ -42,5 +48,8 @@ pub(crate) fn picture(scene: &Scene, settings: &Settings) -> (Vec<u8>, Report) {
 
 /// Settings for one backend.
 pub(crate) fn on(backend: Backend) -> Settings {
-    Settings { backend, ..Settings::default() }
+    Settings {
+        backend,
+        ..Settings::default()
+    }
 }

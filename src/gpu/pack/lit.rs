@@ -39,7 +39,12 @@ impl Lit {
             seen[sphere.object as usize] = number;
         }
         let place = |object: usize| {
-            world.places[object] as u32 | if scene.is_plane[object] { 0 } else { SPHERE_BIT }
+            world.places[object] as u32
+                | if scene.is_plane[object] {
+                    0
+                } else {
+                    SPHERE_BIT
+                }
         };
         let used = || scene.materials.iter().map(|&index| &scene.palette[index]);
         Self {
@@ -53,8 +58,16 @@ impl Lit {
                 .collect(),
             materials: scene.palette.iter().map(material).collect(),
             lights: world.lights.iter().map(light).collect(),
-            planes: world.planes.iter().map(|plane| world_plane(world, plane)).collect(),
-            spheres: world.spheres.iter().map(|s| world_sphere(world, s, seen[s.object])).collect(),
+            planes: world
+                .planes
+                .iter()
+                .map(|plane| world_plane(world, plane))
+                .collect(),
+            spheres: world
+                .spheres
+                .iter()
+                .map(|s| world_sphere(world, s, seen[s.object]))
+                .collect(),
             in_tree: world.bvh.as_ref().map_or(0, |bvh| bvh.len),
             // An axis plane's own z meets the rule exactly, so its rounding must not cross it.
             highest: world.highest as f32,
@@ -75,7 +88,11 @@ fn material(material: &prepare::Material<f64>) -> Material {
         ambient: f32x3(material.ambient),
         transparency: material.transparency as f32,
         diffuse: f32x3(material.diffuse),
-        shininess: if material.mirror { material.shininess as f32 } else { 0.0 },
+        shininess: if material.mirror {
+            material.shininess as f32
+        } else {
+            0.0
+        },
         specular: f32x3(material.specular),
         unused_0: 0,
         tint: f32x3(material.tint),
@@ -98,7 +115,11 @@ fn light(light: &prepare::Light<f64>) -> Light {
 
 /// The bits of the first 32 lights in a list. Beyond them f32's own rounding decides: fast rendering only.
 fn bits(level: &[usize]) -> u32 {
-    level.iter().filter(|&&light| light < 32).map(|light| 1 << light).sum()
+    level
+        .iter()
+        .filter(|&&light| light < 32)
+        .map(|light| 1 << light)
+        .sum()
 }
 
 fn world_plane(world: &World<f64>, plane: &world::WorldPlane<f64>) -> WorldPlane {
@@ -109,8 +130,12 @@ fn world_plane(world: &World<f64>, plane: &world::WorldPlane<f64>) -> WorldPlane
         own[axis] = at as f32;
     }
     let zero = V3::new(0.0, 0.0, 0.0);
-    let (rows, origin, dimensions) =
-        plane.extent.as_ref().map_or(([zero; 2], [0.0; 2], [0.0; 2]), |e| (e.rows, e.origin, e.dimensions));
+    let (rows, origin, dimensions) = plane
+        .extent
+        .as_ref()
+        .map_or(([zero; 2], [0.0; 2], [0.0; 2]), |e| {
+            (e.rows, e.origin, e.dimensions)
+        });
     WorldPlane {
         normal: f32x3(plane.normal),
         offset: plane.offset as f32,

@@ -95,15 +95,27 @@ impl Packed {
     /// Rounds a prepared scene to f32.
     pub fn new(scene: &Prepared<f64>) -> Self {
         let world_tree = scene.world.as_ref().and_then(|world| world.bvh.as_ref());
-        let tree = if scene.world.is_some() { world_tree } else { scene.bvh.as_ref() };
+        let tree = if scene.world.is_some() {
+            world_tree
+        } else {
+            scene.bvh.as_ref()
+        };
         let mut packed = Self {
             camera: camera(&scene.camera),
             scale: scene.camera.scale,
-            objects: scene.materials.iter().map(|&m| object(scene.palette[m].ambient)).collect(),
+            objects: scene
+                .materials
+                .iter()
+                .map(|&m| object(scene.palette[m].ambient))
+                .collect(),
             kinds: Vec::new(),
             planes: Vec::new(),
             rectangles: Vec::new(),
-            bvh: tree.iter().flat_map(|bvh| &bvh.nodes).map(bvh_node).collect(),
+            bvh: tree
+                .iter()
+                .flat_map(|bvh| &bvh.nodes)
+                .map(bvh_node)
+                .collect(),
             bvh_depth: tree.map_or(0, |bvh| bvh.depth),
             small_spheres: Vec::new(),
             wide_spheres: Vec::new(),
@@ -135,7 +147,11 @@ impl Packed {
                 packed.pack_surface(scene, object, &mut textures);
             }
         } else {
-            let hit = scene.planes.iter().map(|plane| plane.object).chain(scene.spheres.iter().map(|s| s.object));
+            let hit = scene
+                .planes
+                .iter()
+                .map(|plane| plane.object)
+                .chain(scene.spheres.iter().map(|s| s.object));
             for object in hit {
                 packed.pack_surface(scene, object, &mut textures);
             }
@@ -143,7 +159,10 @@ impl Packed {
         }
         packed.kinds.sort_unstable();
         packed.kinds.dedup();
-        packed.lit = scene.world.as_ref().map(|world| Lit::new(scene, world, &packed));
+        packed.lit = scene
+            .world
+            .as_ref()
+            .map(|world| Lit::new(scene, world, &packed));
         packed
     }
 
@@ -151,7 +170,8 @@ impl Packed {
     fn pack_surface(&mut self, scene: &Prepared<f64>, object: usize, textures: &mut [Option<u32>]) {
         match &scene.surfaces[object] {
             prepare::Surface::Tiled(tiled) => {
-                self.tiled_planes.push(tiled_plane(scene, tiled, scene.materials[object]));
+                self.tiled_planes
+                    .push(tiled_plane(scene, tiled, scene.materials[object]));
                 self.set_kind(object, Kind::Tiled, self.tiled_planes.len() - 1);
             }
             prepare::Surface::Pplane(pplane) => {
@@ -163,8 +183,10 @@ impl Packed {
                     let first = self.texels.len() as u32;
                     let texels = &scene.textures[textured.texture];
                     let rows = texels.rgb.chunks_exact(3 * texels.width as usize).rev();
-                    let pack = |t: &[u8]| u32::from(t[0]) | u32::from(t[1]) << 8 | u32::from(t[2]) << 16;
-                    self.texels.extend(rows.flat_map(|row| row.chunks_exact(3)).map(pack));
+                    let pack =
+                        |t: &[u8]| u32::from(t[0]) | u32::from(t[1]) << 8 | u32::from(t[2]) << 16;
+                    self.texels
+                        .extend(rows.flat_map(|row| row.chunks_exact(3)).map(pack));
                     first
                 });
                 self.texplanes.push(texplane(textured, first));
@@ -201,7 +223,11 @@ impl Packed {
 
     fn set_kind(&mut self, object: usize, kind: Kind, record: usize) {
         // A plain object needs no record; the others are far fewer than 2²⁴ before any buffer is full.
-        self.objects[object].kind = if kind == Kind::Plain { 0 } else { kind.code() | ((record as u32) << 8) };
+        self.objects[object].kind = if kind == Kind::Plain {
+            0
+        } else {
+            kind.code() | ((record as u32) << 8)
+        };
         if self.kinds.last() != Some(&kind) {
             self.kinds.push(kind);
         }
@@ -227,7 +253,11 @@ impl Packed {
 
     /// Iterations of the loops over objects outside the tree, for one primary ray.
     pub fn loop_iterations(&self) -> usize {
-        let small = if self.bvh.is_empty() { self.small_spheres.len() } else { 0 };
+        let small = if self.bvh.is_empty() {
+            self.small_spheres.len()
+        } else {
+            0
+        };
         self.planes.len() + self.rectangles.len() + small + self.wide_spheres.len()
     }
 }
@@ -249,11 +279,19 @@ fn camera(camera: &prepare::Camera<f64>) -> CameraText {
 }
 
 fn object(ambient: V3<f64>) -> Object {
-    Object { ambient: f32x3(ambient), kind: 0 }
+    Object {
+        ambient: f32x3(ambient),
+        kind: 0,
+    }
 }
 
 fn bvh_node(node: &prepare::bvh::Node) -> BvhNode {
-    BvhNode { min: node.min, first: node.first, max: node.max, count: node.count }
+    BvhNode {
+        min: node.min,
+        first: node.first,
+        max: node.max,
+        count: node.count,
+    }
 }
 
 fn form(form: [f64; 3]) -> [f32; 3] {
@@ -336,7 +374,12 @@ fn procedural_plane(pplane: &Pplane<f64>) -> ProceduralPlane {
         unused_1: 0,
         parity: pplane.index.map(|i| i.parity as f32),
         unused_2: 0,
-        from_point: [x.per_unit as f32, y.per_unit as f32, x.offset as f32, y.offset as f32],
+        from_point: [
+            x.per_unit as f32,
+            y.per_unit as f32,
+            x.offset as f32,
+            y.offset as f32,
+        ],
     }
 }
 

@@ -1,0 +1,128 @@
+//! Slips of writing that are known by their look: spaces and minus signs of a word processor, comments and brackets of
+//! other languages.
+//!
+//! Nothing is forgiven here: the parser (text → lex → parse → [`Scene`](super::Scene)) asks only about a token that is
+//! wrong, to say what would mend it.
+
+use std::ops::Range;
+
+use super::lex::{Kind as Lexeme, Token};
+use super::number::{self, split_dash};
+use super::parse::Parser;
+use crate::diagnostic::Diagnostic;
+
+/// What to say where another language's comment stands.
+pub(super) const COMMENT_HELP: &str = "comments begin with `#`";
+
+/// A space that separates nothing, since it is not ASCII's: its bytes in the token, and what it is called.
+fn strange_space(token: &[u8]) -> Option<(Range<usize>, String)> {
+    let text = std::str::from_utf8(token).ok()?;
+    let (start, space) = text.char_indices().find(|(_, c)| is_strange_space(*c))?;
+    let name = match space {
+        '\u{A0}' => "no-break space",
+        '\u{202F}' => "narrow no-break space",
+        '\u{200B}' | '\u{FEFF}' => "space of no width",
+        _ => "space of another kind",
+    };
+    let name = format!("{name} (U+{:04X})", u32::from(space));
+    Some((start..start + space.len_utf8(), name))
+}
+
+fn is_strange_space(c: char) -> bool {
+    c.is_whitespace() || matches!(c, '\u{200B}' | '\u{FEFF}')
+}
+
+/// The complaint about a space in a token that is not ASCII's, if it holds one.
+pub(super) fn strange_space_error(token: Token<'_>) -> Option<Diagnostic> {
+    let (place, name) = strange_space(token.text)?;
+    let span = token.start + place.start..token.start + place.end;
+    let message = format!("there is a {name} in {}", token.quoted());
+    Some(Diagnostic::new(span, message).help("use a plain space"))
+}
+
+/// The words that were meant where a token holds spaces that are not ASCII's.
+pub(super) fn words_of<'t>(token: Token<'t>) -> impl Iterator<Item = Token<'t>> {
+    let text = std::str::from_utf8(token.text).unwrap_or_default();
+    text.split(is_strange_space)
+        .filter(|word| !word.is_empty())
+        .map(move |word| Token {
+            text: word.as_bytes(),
+            start: token.start + (word.as_ptr().addr() - text.as_ptr().addr()),
+            ..token
+        })
+}
+
+/// Does this token begin a comment in other languages, or point at something as handwriting does?
+pub(super) fn is_comment(token: &[u8]) -> bool {
+    [b"//".as_slice(), b"/*", "←".as_bytes()]
+        .iter()
+        .any(|mark| token.starts_with(mark))
+}
+
+/// What would mend a token that is no number, or no whole one where one must be.
+pub(super) fn number_help(token: &[u8], whole: bool) -> Option<String> {
+    if is_comment(token) {
+        return Some(String::from(COMMENT_HELP));
+    }
+    if token.contains(&b',') {
+        return Some(String::from(
+            "numbers have a decimal point, and white space between them",
+        ));
+    }
+    let is_number = |text: &[u8]| {
+        if whole {
+            number::parse_integer(text).is_ok()
+        } else {
+            number::parse_number(text).is_ok()
+        }
+    };
+    if let Some((dash, digits)) = split_dash(token) {
+        let digits = std::str::from_utf8(digits).ok()?;
+        let code = u32::from(dash);
+        return is_number(digits.as_bytes())
+            .then(|| format!("`{dash}` is U+{code:04X}; write -{digits}"));
+    }
+    let text = std::str::from_utf8(token).ok()?;
+    if let Some((above, below)) = text.split_once('/')
+        && number::parse_number(above.as_bytes()).is_ok()
+        && number::parse_number(below.as_bytes()).is_ok()
+    {
+        return (!whole).then(|| String::from("write a quotient as a decimal number"));
+    }
+    let alone = text
+        .trim_start_matches(['(', '['])
+        .trim_end_matches([')', ']', ';']);
+    if alone.len() < text.len() && is_number(alone.as_bytes()) {
+        return Some(format!("write the number alone, like {alone}"));
+    }
+    match number::parse_number(token) {
+        // Up to here each whole f64 is the number that was written.
+        Ok(value) if whole && value.fract() == 0.0 && value.abs() < 1e15 => {
+            Some(format!("write {value}"))
+        }
+        _ => None,
+    }
+}
+
+impl Parser<'_> {
+    /// Skips what is left of a comment of another language, behind its first token; inside a block no brace of it.
+    pub(super) fn skip_comment(&mut self, first: Token<'_>, in_block: bool) {
+        let long = first.text.starts_with(b"/*");
+        let mut last = first.text;
+        loop {
+            let next = self.window[0].kind;
+            let ends = if long {
+                last.ends_with(b"*/")
+            } else {
+                self.starts_line()
+            };
+            if ends || next == Lexeme::End || (in_block && next != Lexeme::Word) {
+                return;
+            }
+            last = self.bump().text;
+            if next == Lexeme::Open {
+                self.skip_block();
+            }
+        }
+    }
+}
