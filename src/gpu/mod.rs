@@ -9,6 +9,7 @@ pub mod compose;
 pub mod describe;
 pub mod device;
 pub mod features;
+pub mod literal;
 pub mod pack;
 pub mod pipeline;
 

@@ -1,0 +1,166 @@
+//! Which rectangle of the frame is dispatched next, and how large it is: bounded in time by what the last ones took.
+
+use std::ops::Range;
+
+use super::super::compose::WORKGROUP;
+use crate::cpu::pixel::Jitter;
+
+/// A dispatch is made larger or smaller so that it takes about this long.
+const TARGET_SECONDS: f64 = 0.15;
+/// Ray–object tests of the first dispatch, whose speed is not known yet: a tenth of a second on two CPU cores.
+const FIRST_TESTS: u64 = 8 << 20;
+/// What a pixel costs beside its objects, in tests.
+const PIXEL_TESTS: u64 = 8;
+
+/// A rectangle of a band: columns of rows `band` (from the bottom).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Rectangle {
+    pub(super) band: Range<u32>,
+    pub(super) columns: Range<u32>,
+    /// Whether the band is complete with it.
+    pub(super) last: bool,
+}
+
+impl Rectangle {
+    pub(super) fn pixels(&self) -> u64 {
+        u64::from(self.band.end - self.band.start)
+            * u64::from(self.columns.end - self.columns.start)
+    }
+
+    /// The offsets of the samples of its pixels, top row first.
+    pub(super) fn offsets(&self, jitter: &Jitter, samples: u32) -> Vec<[f32; 2]> {
+        let columns = self.columns.start as usize * samples as usize
+            ..self.columns.end as usize * samples as usize;
+        let rows = self.band.clone().rev().filter_map(|y| jitter.row(y));
+        rows.flat_map(|row| {
+            row[columns.clone()]
+                .iter()
+                .map(|[a, b]| [*a as f32, *b as f32])
+                .collect::<Vec<_>>()
+        })
+        .collect()
+    }
+}
+
+/// Which rectangle comes next, and how large it is to be.
+#[derive(Debug)]
+pub(super) struct Plan {
+    width: u32,
+    rows: Range<u32>,
+    largest: u64,
+    pixels: u64,
+    /// The band under way and its next column.
+    pub(super) band: Option<(Range<u32>, u32)>,
+}
+
+impl Plan {
+    pub(super) fn new(width: u32, rows: Range<u32>, largest: u64, tests: usize) -> Self {
+        let pixels = (FIRST_TESTS / (tests as u64 + PIXEL_TESTS)).clamp(1, largest);
+        Self {
+            width,
+            rows,
+            largest,
+            pixels,
+            band: None,
+        }
+    }
+
+    /// Learns that a dispatch of so many pixels took so long.
+    pub(super) fn took(&mut self, pixels: u64, seconds: f64) {
+        let ideal = pixels as f64 * TARGET_SECONDS / seconds.max(1e-6);
+        // Carefully: one measurement says little, and the next rectangle may be of another kind.
+        let (least, most) = (self.pixels as f64 / 4.0, self.pixels as f64 * 4.0);
+        self.pixels = (ideal.clamp(least, most) as u64).clamp(1, self.largest);
+    }
+
+    pub(super) fn next(&mut self) -> Option<Rectangle> {
+        let (band, column) = match self.band.take() {
+            Some(under_way) => under_way,
+            None => {
+                if self.rows.is_empty() {
+                    return None;
+                }
+                // Whole workgroups of rows if they fit; columns are cut where even those take too long.
+                let fitting = (self.largest / u64::from(self.width))
+                    .max(1)
+                    .min(u64::from(u32::MAX)) as u32;
+                let wanted = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
+                let height = wanted
+                    .max(WORKGROUP)
+                    .min(fitting)
+                    .min(self.rows.end - self.rows.start);
+                let band = self.rows.end - height..self.rows.end;
+                self.rows.end = band.start;
+                (band, 0)
+            }
+        };
+        let height = u64::from(band.end - band.start);
+        let cut = (self.pixels / height) as u32 / WORKGROUP * WORKGROUP;
+        let end = column.saturating_add(cut.max(WORKGROUP)).min(self.width);
+        let last = end == self.width;
+        if !last {
+            self.band = Some((band.clone(), end));
+        }
+        Some(Rectangle {
+            band,
+            columns: column..end,
+            last,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::MAX_PIXELS;
+    use super::*;
+
+    /// Every pixel exactly once, bands from the top down, and no dispatch larger than allowed.
+    fn covers(
+        width: u32,
+        rows: Range<u32>,
+        largest: u64,
+        tested: usize,
+        seconds: impl Fn(u64) -> f64,
+    ) {
+        let mut plan = Plan::new(width, rows.clone(), largest, tested);
+        let mut top = rows.end;
+        let mut column = 0;
+        while let Some(r) = plan.next() {
+            assert_eq!(r.columns.start, column);
+            assert_eq!(r.band.end, top);
+            assert!(r.pixels() <= largest && r.pixels() > 0, "{r:?}");
+            if r.last {
+                assert_eq!(r.columns.end, width);
+                top = r.band.start;
+                column = 0;
+            } else {
+                column = r.columns.end;
+            }
+            plan.took(r.pixels(), seconds(r.pixels()));
+        }
+        assert_eq!((top, column), (rows.start, 0));
+    }
+
+    #[test]
+    fn rectangles_cover_the_rows_once() {
+        let fast = |pixels: u64| pixels as f64 * 1e-8;
+        let slow = |pixels: u64| pixels as f64 * 1e-3;
+        covers(640, 0..480, MAX_PIXELS, 3, fast);
+        covers(640, 0..480, MAX_PIXELS, 100_000, slow);
+        covers(1, 0..1, 1, 3, fast);
+        covers(1_000_000, 3..57, MAX_PIXELS, 3, fast);
+        covers(1_000_000, 0..40, MAX_PIXELS, 1_000_000, slow);
+        covers(7, 100..1_000_000, MAX_PIXELS, 3, fast);
+    }
+
+    #[test]
+    fn a_slow_scene_gets_small_dispatches() {
+        let mut plan = Plan::new(1000, 0..1000, MAX_PIXELS, 3);
+        for _ in 0..10 {
+            let Some(r) = plan.next() else { break };
+            plan.took(r.pixels(), r.pixels() as f64 * 1e-4);
+        }
+        let pixels = plan.next().map(|r| r.pixels()).unwrap();
+        assert!(pixels as f64 * 1e-4 <= 0.5, "{pixels}");
+    }
+}

@@ -1,0 +1,215 @@
+//! The buffers of one dispatch under way: two of these take turns.
+
+use std::time::Instant;
+
+use super::super::GpuError;
+use super::super::compose::WORKGROUP;
+use super::super::device::Gpu;
+use super::super::pack::Job;
+use super::super::pipeline::Pipeline;
+use super::assembly::Assembly;
+use super::plan::Rectangle;
+use super::{BandTimes, OFFSET_BYTES};
+use crate::cpu::pixel::Jitter;
+
+/// Buffers for one dispatch under way.
+#[derive(Debug)]
+pub(super) struct Slot {
+    job: wgpu::Buffer,
+    offsets: Option<wgpu::Buffer>,
+    pixels: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+    clock: Option<Clock>,
+    pixel_bytes: u64,
+    pending: Option<(wgpu::SubmissionIndex, Rectangle)>,
+}
+
+/// Timestamps before and after a dispatch.
+#[derive(Debug)]
+struct Clock {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    staging: wgpu::Buffer,
+}
+
+impl Slot {
+    pub(super) fn new(gpu: &Gpu, pipeline: &Pipeline, largest: u64) -> Self {
+        let buffer = |label, size, usage| {
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            };
+            gpu.device.create_buffer(&descriptor)
+        };
+        let size = largest * pipeline.pixel_bytes;
+        let job = buffer(
+            "job",
+            size_of::<Job>() as u64,
+            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        );
+        let pixels = buffer(
+            "pixels",
+            size,
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        );
+        let staging = buffer(
+            "staging",
+            size,
+            wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        );
+        let clock = gpu.timestamps.then(|| Clock {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("clock"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            }),
+            resolved: buffer(
+                "clock",
+                16,
+                wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            ),
+            staging: buffer(
+                "clock staging",
+                16,
+                wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            ),
+        });
+        let offsets = (pipeline.offsets > 0).then(|| {
+            let size = largest * u64::from(pipeline.offsets) * OFFSET_BYTES;
+            buffer(
+                "offsets",
+                size,
+                wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            )
+        });
+        let bind_group = pipeline.bind(gpu, &job, &pixels, offsets.as_ref());
+        Self {
+            job,
+            offsets,
+            pixels,
+            staging,
+            bind_group,
+            clock,
+            pixel_bytes: pipeline.pixel_bytes,
+            pending: None,
+        }
+    }
+
+    pub(super) fn submit(
+        &mut self,
+        gpu: &Gpu,
+        pipeline: &Pipeline,
+        jitter: &Jitter,
+        rectangle: Rectangle,
+    ) {
+        let columns = rectangle.columns.end - rectangle.columns.start;
+        let rows = rectangle.band.end - rectangle.band.start;
+        let job = Job {
+            first: [rectangle.columns.start, rectangle.band.end - 1],
+            size: [columns, rows],
+        };
+        gpu.queue
+            .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+        if let Some(offsets) = &self.offsets {
+            gpu.queue.write_buffer(
+                offsets,
+                0,
+                bytemuck::cast_slice(&rectangle.offsets(jitter, pipeline.offsets)),
+            );
+        }
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let timestamp_writes = self
+            .clock
+            .as_ref()
+            .map(|clock| wgpu::ComputePassTimestampWrites {
+                query_set: &clock.queries,
+                beginning_of_pass_write_index: Some(0),
+                end_of_pass_write_index: Some(1),
+            });
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("plumb"),
+                timestamp_writes,
+            });
+            pass.set_pipeline(&pipeline.pipeline);
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            pass.dispatch_workgroups(columns.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
+        }
+        let bytes = rectangle.pixels() * self.pixel_bytes;
+        encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.staging, 0, bytes);
+        if let Some(clock) = &self.clock {
+            encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
+            encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
+        }
+        let index = gpu.queue.submit([encoder.finish()]);
+        self.staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
+        if let Some(clock) = &self.clock {
+            clock.staging.map_async(wgpu::MapMode::Read, .., |_| ());
+        }
+        self.pending = Some((index, rectangle));
+    }
+
+    /// Waits for the dispatch and takes its pixels; returns how many there were, and the seconds they took.
+    pub(super) fn collect(
+        &mut self,
+        gpu: &Gpu,
+        assembly: &mut Assembly,
+        times: &mut BandTimes,
+    ) -> Result<(u64, f64), GpuError> {
+        let Some((index, rectangle)) = self.pending.take() else {
+            return Ok((0, 0.0));
+        };
+        let start = Instant::now();
+        let polled = gpu.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(index),
+            timeout: None,
+        });
+        gpu.check()?;
+        let lost = |reason: String| GpuError::Lost {
+            adapter: gpu.name.clone(),
+            reason,
+        };
+        polled.map_err(|error| lost(error.to_string()))?;
+        let waited = start.elapsed().as_secs_f64();
+        let kernel = match &self.clock {
+            Some(clock) => {
+                let view = clock
+                    .staging
+                    .get_mapped_range(..)
+                    .map_err(|error| lost(error.to_string()))?;
+                let ticks: [u64; 2] = [word(&view, 0), word(&view, 1)];
+                drop(view);
+                clock.staging.unmap();
+                ticks[1].saturating_sub(ticks[0]) as f64
+                    * f64::from(gpu.queue.get_timestamp_period())
+                    * 1e-9
+            }
+            None => waited,
+        };
+        let pixels = rectangle.pixels();
+        let bytes = pixels * self.pixel_bytes;
+        let view = self
+            .staging
+            .get_mapped_range(..bytes)
+            .map_err(|error| lost(error.to_string()))?;
+        assembly.take(&rectangle, &view);
+        drop(view);
+        self.staging.unmap();
+        times.kernel += kernel;
+        times.readback += (start.elapsed().as_secs_f64() - kernel).max(0.0);
+        Ok((pixels, kernel))
+    }
+}
+
+/// The little-endian u64 number `i` of a mapped buffer.
+fn word(view: &[u8], i: usize) -> u64 {
+    view.chunks_exact(8)
+        .nth(i)
+        .and_then(|bytes| bytes.try_into().ok())
+        .map_or(0, u64::from_le_bytes)
+}
