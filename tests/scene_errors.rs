@@ -334,12 +334,16 @@ fn a_float_where_an_integer_belongs() {
               |
             1 | camera cam { pixeldim 640.0 4e2 worlddim 8 6 viewpoint 4 3 6 }
               |                       ^^^^^
+              |
+              = help: write 640
 
             error: `4e2` is not a whole number
               --> scene.txt:1:29
               |
             1 | camera cam { pixeldim 640.0 4e2 worlddim 8 6 viewpoint 4 3 6 }
               |                             ^^^
+              |
+              = help: write 400
         "#]],
     );
     check(
@@ -350,6 +354,8 @@ fn a_float_where_an_integer_belongs() {
               |
             3 | pplane p { material green normal 0 0 1 point 0 0 0 shader 0x1 }
               |                                                           ^^^
+              |
+              = help: write 1
         "#]],
     );
 }
@@ -555,22 +561,26 @@ fn missing_attribute() {
     check_rest(
         "plane wall { material green point 0 0 0 }",
         expect![[r#"
-        error: this `plane` lacks `normal`
-          --> scene.txt:3:1
-          |
-        3 | plane wall { material green point 0 0 0 }
-          | ^^^^^^^^^^
-    "#]],
+            error: this `plane` lacks `normal`
+              --> scene.txt:3:1
+              |
+            3 | plane wall { material green point 0 0 0 }
+              | ^^^^^^^^^^
+              |
+              = help: add `normal 0 1 0`, for example
+        "#]],
     );
     check_rest(
         "plane wall { }",
         expect![[r#"
-        error: this `plane` lacks `material`, `normal`, `point`
-          --> scene.txt:3:1
-          |
-        3 | plane wall { }
-          | ^^^^^^^^^^
-    "#]],
+            error: this `plane` lacks `material`, `normal`, `point`
+              --> scene.txt:3:1
+              |
+            3 | plane wall { }
+              | ^^^^^^^^^^
+              |
+              = help: add `material name`, `normal 0 1 0`, `point 0 0 0`, for example
+        "#]],
     );
     check_rest(
         "material m { }",
@@ -1006,6 +1016,8 @@ fn texplane_mode() {
               |
             3 | texplane t { material green normal 0 0 1 point 0 0 0 xdir 1 0 0 dimensions 1 1 mode 2 }
               | ^^^^^^^^^^
+              |
+              = help: add `texname name`, for example
 
             error: `mode` must be 0 or 1
               --> scene.txt:3:85
@@ -1364,6 +1376,8 @@ fn every_mistake_is_reported_at_once() {
                |
             14 | light l { location 0 0 0 }
                | ^^^^^^^
+               |
+               = help: add `emissivity 5 5 5`, for example
         "#]],
     );
 }
@@ -1597,4 +1611,284 @@ fn line_ends_and_byte_order_marks_are_no_mistakes() {
     )
     .unwrap();
     assert_eq!(scene, other);
+}
+
+#[test]
+fn spaces_of_a_word_processor() {
+    check(
+        "camera cam { pixeldim\u{A0}640 480 worlddim 8\u{A0}6 \u{A0}viewpoint 4 3 6 }",
+        expect![[r#"
+            error: there is a no-break space (U+00A0) in `pixeldim 640`
+              --> scene.txt:1:22
+              |
+            1 | camera cam { pixeldim 640 480 worlddim 8 6  viewpoint 4 3 6 }
+              |                      ^
+              |
+              = help: use a plain space
+
+            error: there is a no-break space (U+00A0) in `8 6`
+              --> scene.txt:1:41
+              |
+            1 | camera cam { pixeldim 640 480 worlddim 8 6  viewpoint 4 3 6 }
+              |                                         ^
+              |
+              = help: use a plain space
+
+            error: there is a no-break space (U+00A0) in ` viewpoint`
+              --> scene.txt:1:44
+              |
+            1 | camera cam { pixeldim 640 480 worlddim 8 6  viewpoint 4 3 6 }
+              |                                            ^
+              |
+              = help: use a plain space
+        "#]],
+    );
+    check(
+        "\u{FEFF}\u{A0}camera\u{2003}cam { pixeldim 0 }\nmaterial\u{A0}red { ambient 1 0 0 }\nsphere s { material red\ncenter 0 0 0 \u{A0}radius\u{A0}1 }\u{A0}",
+        expect![[r#"
+            error: there is a no-break space (U+00A0) in ` camera cam`
+              --> scene.txt:1:1
+              |
+            1 |  camera cam { pixeldim 0 }
+              | ^
+              |
+              = help: use a plain space
+
+            error: there is a no-break space (U+00A0) in `material red`
+              --> scene.txt:2:9
+              |
+            2 | material red { ambient 1 0 0 }
+              |         ^
+              |
+              = help: use a plain space
+
+            error: there is a no-break space (U+00A0) in ` radius 1`
+              --> scene.txt:4:14
+              |
+            4 | center 0 0 0  radius 1 } 
+              |              ^
+              |
+              = help: use a plain space
+
+            error: there is a no-break space (U+00A0) in ` `
+              --> scene.txt:4:25
+              |
+            4 | center 0 0 0  radius 1 } 
+              |                         ^
+              |
+              = help: use a plain space
+        "#]],
+    );
+    check_rest(
+        "sphere\u{A0}ball { radius 0 }\nplane wall { material\u{202F}green normal 0 0 1\u{A0}point 0 0 0 }",
+        expect![[r#"
+            error: there is a no-break space (U+00A0) in `sphere ball`
+              --> scene.txt:3:7
+              |
+            3 | sphere ball { radius 0 }
+              |       ^
+              |
+              = help: use a plain space
+
+            error: there is a narrow no-break space (U+202F) in `material green`
+              --> scene.txt:4:22
+              |
+            4 | plane wall { material green normal 0 0 1 point 0 0 0 }
+              |                      ^
+              |
+              = help: use a plain space
+
+            error: there is a no-break space (U+00A0) in `1 point`
+              --> scene.txt:4:41
+              |
+            4 | plane wall { material green normal 0 0 1 point 0 0 0 }
+              |                                         ^
+              |
+              = help: use a plain space
+        "#]],
+    );
+}
+
+#[test]
+fn dashes_for_minus_signs() {
+    check_rest(
+        "plane wall { material green normal −3 –.5 —1 point 0 0 0 }",
+        expect![[r#"
+            error: `−3` is not a number
+              --> scene.txt:3:36
+              |
+            3 | plane wall { material green normal −3 –.5 —1 point 0 0 0 }
+              |                                    ^^
+              |
+              = help: `−` is U+2212; write -3
+
+            error: `–.5` is not a number
+              --> scene.txt:3:39
+              |
+            3 | plane wall { material green normal −3 –.5 —1 point 0 0 0 }
+              |                                       ^^^
+              |
+              = help: `–` is U+2013; write -.5
+
+            error: `—1` is not a number
+              --> scene.txt:3:43
+              |
+            3 | plane wall { material green normal −3 –.5 —1 point 0 0 0 }
+              |                                           ^^
+              |
+              = help: `—` is U+2014; write -1
+        "#]],
+    );
+}
+
+#[test]
+fn comments_of_other_languages() {
+    check_rest(
+        "// the { left } wall\nplane wall { material green // not red\nnormal 0 0 1 /* to\nus */ point 0 0 0 ← here\n}\n/* more */",
+        expect![[r#"
+            error: there is no entity `//`
+              --> scene.txt:3:1
+              |
+            3 | // the { left } wall
+              | ^^
+              |
+              = help: comments begin with `#`
+
+            error: `plane` has no attribute `//`
+              --> scene.txt:4:29
+              |
+            4 | plane wall { material green // not red
+              |                             ^^
+              |
+              = help: comments begin with `#`
+
+            error: `plane` has no attribute `/*`
+              --> scene.txt:5:14
+              |
+            5 | normal 0 0 1 /* to
+              |              ^^
+              |
+              = help: comments begin with `#`
+
+            error: `plane` has no attribute `←`
+              --> scene.txt:6:19
+              |
+            6 | us */ point 0 0 0 ← here
+              |                   ^
+              |
+              = help: comments begin with `#`
+
+            error: there is no entity `/*`
+              --> scene.txt:8:1
+              |
+            8 | /* more */
+              | ^^
+              |
+              = help: comments begin with `#`
+        "#]],
+    );
+}
+
+#[test]
+fn numbers_with_something_around_them() {
+    check_rest(
+        "plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }\npplane p { material green normal 0 0 1 point 0 0 0 shader 1; }",
+        expect![[r#"
+            error: `(0` is not a number
+              --> scene.txt:3:36
+              |
+            3 | plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }
+              |                                    ^^
+              |
+              = help: write the number alone, like 0
+
+            error: `0;` is not a number
+              --> scene.txt:3:39
+              |
+            3 | plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }
+              |                                       ^^
+              |
+              = help: write the number alone, like 0
+
+            error: `1)` is not a number
+              --> scene.txt:3:42
+              |
+            3 | plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }
+              |                                          ^^
+              |
+              = help: write the number alone, like 1
+
+            error: `1/3` is not a number
+              --> scene.txt:3:51
+              |
+            3 | plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }
+              |                                                   ^^^
+              |
+              = help: write a quotient as a decimal number
+
+            error: `[0]` is not a number
+              --> scene.txt:3:55
+              |
+            3 | plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }
+              |                                                       ^^^
+              |
+              = help: write the number alone, like 0
+
+            error: `0;x` is not a number
+              --> scene.txt:3:59
+              |
+            3 | plane wall { material green normal (0 0; 1) point 1/3 [0] 0;x }
+              |                                                           ^^^
+
+            error: `1;` is not a whole number
+              --> scene.txt:4:59
+              |
+            4 | pplane p { material green normal 0 0 1 point 0 0 0 shader 1; }
+              |                                                           ^^
+              |
+              = help: write the number alone, like 1
+        "#]],
+    );
+}
+
+#[test]
+fn colours() {
+    check_rest(
+        "material a { ambient 5 }\nmaterial b { diffuse 5 5 }\nmaterial c { color 1 0 0 }\nlight l { location 0 0 0 colour 1 1 1 }",
+        expect![[r#"
+            error: `ambient` takes 3 numbers, found 1
+              --> scene.txt:3:14
+              |
+            3 | material a { ambient 5 }
+              |              ^^^^^^^^^ too few
+              |
+              = help: a colour is red, green, blue: `5 5 5`
+
+            error: `diffuse` takes 3 numbers, found 2
+              --> scene.txt:4:14
+              |
+            4 | material b { diffuse 5 5 }
+              |              ^^^^^^^^^^^ too few
+              |
+              = help: a colour is red, green, blue
+
+            error: `material` has no attribute `color`
+              --> scene.txt:5:14
+              |
+            5 | material c { color 1 0 0 }
+              |              ^^^^^
+              |
+              = help: colour is `ambient` and `diffuse`, each red, green, blue
+
+            error: `light` has no attribute `colour`
+              --> scene.txt:6:26
+              |
+            6 | light l { location 0 0 0 colour 1 1 1 }
+              | -------                  ^^^^^^
+              | |                         
+              | this `light` lacks `emissivity`
+              |
+              = help: colour is `emissivity`: red, green, blue
+        "#]],
+    );
 }

@@ -19,6 +19,7 @@ mod names;
 mod number;
 mod parse;
 mod recover;
+mod slips;
 pub mod table;
 #[cfg(test)]
 mod tests;

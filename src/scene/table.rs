@@ -133,17 +133,20 @@ const fn optional(name: &'static str, take: Take, limit: Limit) -> Attribute {
 
 const CAMERA: &[Attribute] = &[
     row(
-        "pixeldim", "640 480",
+        "pixeldim",
+        "640 480",
         Take::Integers(2, |d| &mut d.pixeldim),
         Limit::Pixels,
     ),
     row(
-        "worlddim", "8 6",
+        "worlddim",
+        "8 6",
         Take::Numbers(2, |d| &mut d.worlddim),
         Limit::Positive,
     ),
     row(
-        "viewpoint", "4 3 6",
+        "viewpoint",
+        "4 3 6",
         Take::Numbers(3, |d| &mut d.viewpoint),
         Limit::InFront,
     ),
@@ -180,24 +183,37 @@ const MATERIAL: &[Attribute] = &[
 const TEXTURE: &[Attribute] = &[row("filename", "wood.ppm", Take::Picture, Limit::None)];
 
 const OBJECT: &[Attribute] = &[row(
-    "material", "name",
+    "material",
+    "name",
     Take::Material(|d| &mut d.material),
     Limit::None,
 )];
 
 const PLANE: &[Attribute] = &[
     row(
-        "normal", "0 1 0",
+        "normal",
+        "0 1 0",
         Take::Numbers(3, |d| &mut d.normal),
         Limit::NotZero,
     ),
-    row("point", "0 0 0", Take::Numbers(3, |d| &mut d.point), Limit::None),
+    row(
+        "point",
+        "0 0 0",
+        Take::Numbers(3, |d| &mut d.point),
+        Limit::None,
+    ),
 ];
 
 const SPHERE: &[Attribute] = &[
-    row("center", "0 0 0", Take::Numbers(3, |d| &mut d.center), Limit::None),
     row(
-        "radius", "1",
+        "center",
+        "0 0 0",
+        Take::Numbers(3, |d| &mut d.center),
+        Limit::None,
+    ),
+    row(
+        "radius",
+        "1",
         Take::Numbers(1, |d| &mut d.radius),
         Limit::Positive,
     ),
@@ -205,14 +221,16 @@ const SPHERE: &[Attribute] = &[
 
 const TILED: &[Attribute] = &[
     row(
-        "altmaterial", "name",
+        "altmaterial",
+        "name",
         Take::Material(|d| &mut d.altmaterial),
         Limit::None,
     ),
     Attribute {
         other_name: Some("dimensions"),
         ..row(
-            "dimension", "1 1",
+            "dimension",
+            "1 1",
             Take::Numbers(2, |d| &mut d.dimension),
             Limit::Positive,
         )
@@ -225,52 +243,74 @@ const TILED: &[Attribute] = &[
 ];
 
 const PROCEDURAL_PLANE: &[Attribute] = &[row(
-    "shader", "0",
+    "shader",
+    "0",
     Take::Integers(1, |d| &mut d.shader),
     Limit::Below(PPLANE_SHADERS),
 )];
 
 const PROCEDURAL_SPHERE: &[Attribute] = &[row(
-    "shader", "0",
+    "shader",
+    "0",
     Take::Integers(1, |d| &mut d.shader),
     Limit::Below(PSPHERE_SHADERS),
 )];
 
 const FINITE: &[Attribute] = &[
     row(
-        "xdir", "1 0 0",
+        "xdir",
+        "1 0 0",
         Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
         Limit::NotZero,
     ),
     row(
-        "dimensions", "1 1",
+        "dimensions",
+        "1 1",
         Take::Numbers(2, |d| &mut d.dimension),
         Limit::Positive,
     ),
 ];
 
 const TEXTURED: &[Attribute] = &[
-    row("texname", "name", Take::Texture(|d| &mut d.texture), Limit::None),
-    row("mode", "0", Take::Integers(1, |d| &mut d.mode), Limit::Below(2)),
+    row(
+        "texname",
+        "name",
+        Take::Texture(|d| &mut d.texture),
+        Limit::None,
+    ),
+    row(
+        "mode",
+        "0",
+        Take::Integers(1, |d| &mut d.mode),
+        Limit::Below(2),
+    ),
 ];
 
 const LIGHT: &[Attribute] = &[
     row(
-        "location", "0 5 0",
+        "location",
+        "0 5 0",
         Take::Numbers(3, |d| &mut d.location),
         Limit::None,
     ),
     row(
-        "emissivity", "5 5 5",
+        "emissivity",
+        "5 5 5",
         Take::Numbers(3, |d| &mut d.emissivity),
         Limit::NotNegative,
     ),
 ];
 
 const SPOT: &[Attribute] = &[
-    row("point", "0 0 0", Take::Numbers(3, |d| &mut d.point), Limit::None),
     row(
-        "theta", "30",
+        "point",
+        "0 0 0",
+        Take::Numbers(3, |d| &mut d.point),
+        Limit::None,
+    ),
+    row(
+        "theta",
+        "30",
         Take::Numbers(1, |d| &mut d.theta),
         Limit::HalfAngle,
     ),

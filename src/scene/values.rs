@@ -98,8 +98,9 @@ impl<'t> Parser<'t> {
         );
         let place = self.errors.report(match meant {
             Some((_, row)) => error.help(format!("did you mean `{}`?", row.name)),
-            None if owners.is_empty() => error
-                .help(colours_of(entity, key.text).unwrap_or_else(|| attributes_of(entity))),
+            None if owners.is_empty() => {
+                error.help(colours_of(entity, key.text).unwrap_or_else(|| attributes_of(entity)))
+            }
             None => error.help(format!(
                 "{word} belongs to {}; {}",
                 owners.join(", "),
