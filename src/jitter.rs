@@ -111,6 +111,51 @@ impl Course {
     }
 }
 
+/// How the pixels of a band are sampled.
+#[derive(Debug, Clone)]
+pub enum Jitter {
+    /// One ray a pixel.
+    Once,
+    /// Several, spread by the hash.
+    Hash(u32),
+    /// Several, as the course's program spread them.
+    Course(Course),
+}
+
+impl Jitter {
+    /// The offsets of a row, where they are not computed pixel by pixel.
+    pub fn row(&self, y: u32) -> Option<Vec<[f64; 2]>> {
+        if let Self::Course(course) = self {
+            Some(course.row(y))
+        } else {
+            None
+        }
+    }
+
+    /// The samples of pixel `x` in a row with these offsets.
+    pub fn pixel<'a>(&self, row: Option<&'a [[f64; 2]]>, width: usize, x: usize) -> Sampling<'a> {
+        match (self, row) {
+            (Self::Hash(samples), _) => Sampling::Hash(*samples),
+            (Self::Course(_), Some(row)) => {
+                let samples = row.len() / width;
+                Sampling::Given(&row[x * samples..(x + 1) * samples])
+            }
+            _ => Sampling::Once,
+        }
+    }
+}
+
+/// Which rays a pixel is made of.
+#[derive(Debug, Clone, Copy)]
+pub enum Sampling<'a> {
+    /// One, through its middle.
+    Once,
+    /// This many, spread by the hash.
+    Hash(u32),
+    /// As the course's program spread them: the offsets of this pixel.
+    Given(&'a [[f64; 2]]),
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

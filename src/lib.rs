@@ -16,6 +16,7 @@
 
 pub mod cpu;
 pub mod diagnostic;
+pub mod frame;
 pub mod gpu;
 pub mod image;
 pub mod jitter;
@@ -23,4 +24,5 @@ pub mod prepare;
 pub mod real;
 pub mod render;
 pub mod scene;
+pub mod settings;
 pub mod vector;

@@ -5,8 +5,9 @@
 mod common;
 
 use plumb::cpu::camera::camera_setpix;
-use plumb::cpu::pixel::{Sampling, Stages};
+use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Fault, Limits, Unwatched, ray_trace};
+use plumb::jitter::Sampling;
 use plumb::prepare::{Prepared, View};
 use plumb::real::Bounded;
 

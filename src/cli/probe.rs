@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use anyhow::{Result, anyhow, bail};
 use plumb::cpu::camera::camera_setpix;
-use plumb::cpu::pixel::{Jitter, Sampling, Stages};
+use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Fault, Limits, Traced, Unwatched, ray_trace};
 use plumb::jitter;
+use plumb::jitter::{Jitter, Sampling};
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Undecided, V3};
 use plumb::render::PixelFault;

@@ -14,12 +14,13 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::pixel::{Sampling, Stages};
+use super::pixel::Stages;
 use super::sphere::sphere_from_center;
 use super::trace::{Fault, Hit, Limits, Traced, Unwatched, ray_trace};
+use crate::frame::PixelFault;
+use crate::jitter::Sampling;
 use crate::prepare::Prepared;
 use crate::prepare::exact::two_to;
-use crate::render::PixelFault;
 use crate::scene::{Scene, Shape};
 
 /// Which parts are listed.

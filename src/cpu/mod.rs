@@ -12,4 +12,5 @@ pub mod procedural;
 pub mod sphere;
 pub mod surface;
 pub mod trace;
+pub mod watch;
 pub mod world;

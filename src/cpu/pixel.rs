@@ -7,22 +7,11 @@ use rayon::prelude::*;
 
 use super::camera::camera_setpix;
 use super::trace::{Fault, Limits, Unwatched, ray_trace};
-use crate::jitter::{self, Course};
+use crate::frame::{Band, Pixel, PixelFault};
+use crate::jitter::{self, Jitter, Sampling};
 use crate::prepare::{Prepared, View};
 use crate::real::{Bounded, DoubleDouble, Real, V3};
-use crate::render::{Band, PixelFault};
 use crate::scene::Scene;
-
-/// Which rays a pixel is made of.
-#[derive(Debug, Clone, Copy)]
-pub enum Sampling<'a> {
-    /// One, through its middle.
-    Once,
-    /// This many, spread by the hash.
-    Hash(u32),
-    /// As the course's program spread them: the offsets of this pixel.
-    Given(&'a [[f64; 2]]),
-}
 
 /// The value of pixel (x, y), counted from the bottom left: the mean of its samples.
 pub fn make_pixel<R: Real>(
@@ -56,40 +45,6 @@ pub fn make_pixel<R: Real>(
     Ok(V3::new(sum.x / n, sum.y / n, sum.z / n))
 }
 
-/// How the pixels of a band are sampled.
-#[derive(Debug, Clone)]
-pub enum Jitter {
-    /// One ray a pixel.
-    Once,
-    /// Several, spread by the hash.
-    Hash(u32),
-    /// Several, as the course's program spread them.
-    Course(Course),
-}
-
-impl Jitter {
-    /// The offsets of a row, where they are not computed pixel by pixel.
-    pub fn row(&self, y: u32) -> Option<Vec<[f64; 2]>> {
-        if let Self::Course(course) = self {
-            Some(course.row(y))
-        } else {
-            None
-        }
-    }
-
-    /// The samples of pixel `x` in a row with these offsets.
-    pub fn pixel<'a>(&self, row: Option<&'a [[f64; 2]]>, width: usize, x: usize) -> Sampling<'a> {
-        match (self, row) {
-            (Self::Hash(samples), _) => Sampling::Hash(*samples),
-            (Self::Course(_), Some(row)) => {
-                let samples = row.len() / width;
-                Sampling::Given(&row[x * samples..(x + 1) * samples])
-            }
-            _ => Sampling::Once,
-        }
-    }
-}
-
 /// The scene on the CPU, in as many number types as it takes: f64 with error bounds decides nearly every pixel; where it
 /// cannot, pairs of f64 do; and plain f64 where those overflow.
 #[derive(Debug)]
@@ -100,9 +55,6 @@ pub struct Stages<'a> {
     pairs: OnceLock<Prepared<DoubleDouble>>,
     plain: OnceLock<Prepared<f64>>,
 }
-
-/// Value and bytes of a pixel.
-pub type Pixel = ([f32; 3], [u8; 3]);
 
 impl<'a> Stages<'a> {
     /// Prepares the scene.

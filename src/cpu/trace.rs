@@ -11,6 +11,9 @@ use crate::prepare::exact::two_to;
 use crate::prepare::{Prepared, Surface, World};
 use crate::real::{Real, Undecided, V3};
 
+pub use super::watch::{Branch, RayKind, Unmet, Unwatched, Watch};
+pub use crate::settings::Limits;
+
 /// A hit of a primary ray.
 #[derive(Debug, Clone, Copy)]
 pub struct Hit<R> {
@@ -20,27 +23,6 @@ pub struct Hit<R> {
     pub object: usize,
     /// Index of the prepared plane or sphere.
     pub index: usize,
-}
-
-/// How far rays are followed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// A ray that starts farther than this along its path brings nothing, in world units.
-    pub max_path: f64,
-    /// Most rays of a sample, shadow rays not counted.
-    pub max_rays: u32,
-    /// A sample this bright in all channels makes its pixel white whatever else it brings: rays take no light away.
-    pub enough: f64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self {
-            max_path: 20.0,
-            max_rays: 1 << 16,
-            enough: 1.0,
-        }
-    }
 }
 
 /// Why a ray's colour is not known.
@@ -57,80 +39,6 @@ impl From<Undecided> for Fault {
         Self::Undecided
     }
 }
-
-/// A ray of the tree that a sample grows.
-#[derive(Debug, Clone, Copy)]
-pub struct Branch<R> {
-    /// Where it starts, from the viewpoint in units of 2^scale.
-    pub base: V3<R>,
-    /// Its unit direction.
-    pub dir: V3<R>,
-    /// Length of the path before it, in units of 2^scale.
-    pub total: R,
-    /// The group of surfaces that it left from.
-    pub last: Option<u32>,
-    /// What its colour counts for.
-    pub weight: V3<R>,
-    /// Number of the ray that it came from; its own for the first.
-    pub parent: u32,
-    /// How it left.
-    pub kind: RayKind,
-}
-
-/// How a ray left the surface it came from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RayKind {
-    /// From the viewpoint.
-    Primary,
-    /// Straight through.
-    Through,
-    /// As a mirror image.
-    Mirror,
-}
-
-/// Why a ray met nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unmet {
-    /// Nothing is there; this is a ray like any other, and has a number.
-    Nothing,
-    /// It was not followed, as the path before it is too long.
-    TooLong,
-    /// It was not followed, as its weight is zero.
-    Weightless,
-}
-
-/// Sees how a colour comes about: `plumb probe` listens, rendering does not.
-///
-/// Rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then the mirror
-/// image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
-pub trait Watch<R> {
-    /// `ray` met nothing; had it a number, that is `number`.
-    fn missed(&mut self, number: u32, ray: &Branch<R>, why: Unmet) {
-        let _ = (number, ray, why);
-    }
-    /// Ray `number` met `point` at distance `t`, where the ambient reflectivity is `ambient`.
-    fn met(&mut self, number: u32, ray: &Branch<R>, t: R, point: &Point<R>, ambient: V3<R>) {
-        let _ = (number, ray, t, point, ambient);
-    }
-    /// What a light does there.
-    fn light(&mut self, light: usize, lit: &Lit<R>) {
-        let _ = (light, lit);
-    }
-    /// What the ray adds to the colour.
-    fn adds(&mut self, share: V3<R>) {
-        let _ = share;
-    }
-    /// The colour is as bright as it can get: so many rays that wait are not followed.
-    fn full(&mut self, waiting: usize) {
-        let _ = waiting;
-    }
-}
-
-/// Nobody listens.
-#[derive(Debug, Clone, Copy)]
-pub struct Unwatched;
-
-impl<R> Watch<R> for Unwatched {}
 
 /// The closest object that a primary ray hits; of equally near ones the first in the file.
 #[inline]

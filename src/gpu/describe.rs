@@ -7,8 +7,8 @@ use super::device::SOFTWARE_LANES;
 use super::features::FeatureSet;
 use super::pack::Packed;
 use crate::prepare::{Prepared, View};
-use crate::render::Settings;
 use crate::scene::Scene;
+use crate::settings::Settings;
 
 fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
     let packed = Packed::new(&Prepared::new(

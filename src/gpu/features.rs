@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::pack::{Kind, Packed};
 use crate::prepare::exact::two_to;
-use crate::render::{Settings, Spread};
+use crate::settings::{Settings, Spread};
 
 /// Which parts of the shader a scene needs.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -11,7 +11,7 @@ use super::png::Png;
 use super::sink::Sink;
 use super::target::Target;
 use super::{Format, OutputError, ppm};
-use crate::render::Band;
+use crate::frame::Band;
 
 /// The key of the picture's hash among the metadata.
 pub const HASH_KEY: &str = "plumb:sha256";

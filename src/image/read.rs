@@ -13,7 +13,7 @@ use ::image::codecs::png::PngDecoder;
 use ::image::{ColorType, DynamicImage, ImageDecoder, ImageError};
 
 use super::ppm;
-use crate::render::Band;
+use crate::frame::Band;
 
 /// The most pixels that are read: 3.2 GB of bytes.
 pub const MAX_PIXELS: u64 = 1 << 30;

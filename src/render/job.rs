@@ -5,13 +5,14 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use super::{Backend, Emit, Error, Report, Seconds, Settings};
-use crate::cpu::pixel::{Jitter, Stages, make_band};
+use crate::cpu::pixel::{Stages, make_band};
 use crate::cpu::trace::Limits;
 use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;
 use crate::gpu::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands, compose};
+use crate::jitter::Jitter;
 use crate::prepare::{Prepared, View};
 use crate::scene::Scene;
 

@@ -5,134 +5,18 @@
 mod job;
 
 use std::io;
-use std::ops::Range;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::cpu::pixel::Jitter;
-use crate::cpu::trace::Limits;
 use crate::gpu::bands::BandError;
 use crate::gpu::{self, GpuError};
-use crate::jitter::Course;
 use crate::prepare::View;
 use crate::scene::Scene;
 use job::Job;
 
-/// What to render, beyond what the scene says.
-#[derive(Debug, Clone)]
-pub struct Settings {
-    /// The rows to render, half-open, counted from the bottom; all without.
-    pub rows: Option<Range<u32>>,
-    /// τ: a hit on a plane counts only where its z is ≤ this; 0 in the notes.
-    pub screen_tolerance: f64,
-    /// Which tracer.
-    pub backend: Backend,
-    /// Rays a pixel: 1 goes through its middle, more are spread and their mean is taken.
-    pub samples: u32,
-    /// How several samples are spread.
-    pub jitter: Spread,
-    /// How far rays are followed.
-    pub limits: Limits,
-    /// Part of the name of the adapter to use, in any case of letters.
-    pub adapter: Option<String>,
-    /// CPU threads; all cores without.
-    pub threads: Option<usize>,
-    /// Whether bands carry the unquantised values too (for EXR).
-    pub values: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            rows: None,
-            screen_tolerance: 0.0,
-            samples: 1,
-            jitter: Spread::Hash,
-            limits: Limits::default(),
-            backend: Backend::Auto,
-            adapter: None,
-            threads: None,
-            values: false,
-        }
-    }
-}
-
-impl Settings {
-    /// How the pixels of a picture of this width are sampled, in the rows below `end`.
-    pub fn sampling(&self, width: u32, end: u32) -> Jitter {
-        match (self.samples, self.jitter) {
-            (0 | 1, _) => Jitter::Once,
-            (samples, Spread::Hash) => Jitter::Hash(samples),
-            (samples, Spread::Course) => Jitter::Course(Course::new(width, end, samples)),
-        }
-    }
-
-    /// The limits of a sample: where the values themselves are wanted, those above 1 count too.
-    pub fn sample_limits(&self) -> Limits {
-        let enough = if self.values {
-            f64::INFINITY
-        } else {
-            f64::from(self.samples)
-        };
-        Limits {
-            enough,
-            ..self.limits
-        }
-    }
-}
-
-/// How the samples of a pixel are spread over it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Spread {
-    /// By a hash of column, row and sample: any row can be rendered alone.
-    #[default]
-    Hash,
-    /// As the course's program did, by the C library's `random()`.
-    Course,
-}
-
-/// A pixel that needs more rays than allowed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "pixel ({x}, {y}) needs more than {max_rays} rays for one sample: mirrors and transparent surfaces multiply them; --max-rays allows more, --max-path fewer"
-)]
-pub struct PixelFault {
-    /// Column, from the left.
-    pub x: u32,
-    /// Row, from the bottom.
-    pub y: u32,
-    /// How many were allowed.
-    pub max_rays: u32,
-}
-
-/// Which tracer renders.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Backend {
-    /// The GPU if there is one, else the CPU.
-    #[default]
-    Auto,
-    /// The GPU, or an error.
-    Gpu,
-    /// The CPU.
-    Cpu,
-}
-
-/// Finished rows, on their way into a picture. Bands come from the top of the picture downwards, without gaps.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Band {
-    /// Which rows, counted from the bottom.
-    pub rows: Range<u32>,
-    /// Red, green, blue of every pixel, the band's top row first: 3 · width · rows bytes.
-    pub rgb: Vec<u8>,
-    /// The values before quantising (1.0 is byte 255), in the same order, if they were asked for.
-    pub values: Option<Vec<[f32; 3]>>,
-}
-
-/// Takes finished bands; an error ends the rendering.
-pub type Emit<'a> = dyn FnMut(&Band) -> io::Result<()> + Send + 'a;
+pub use crate::frame::{Band, Emit, PixelFault};
+pub use crate::settings::{Backend, Settings, Spread};
 
 /// How a rendering went: what `--json` prints.
 #[derive(Debug, Clone, Serialize)]

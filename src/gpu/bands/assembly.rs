@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::plan::Rectangle;
 use super::{BandTimes, Refine};
-use crate::render::{Band, PixelFault};
+use crate::frame::{Band, PixelFault};
 
 /// The band under way, put together from its rectangles.
 #[derive(Debug)]

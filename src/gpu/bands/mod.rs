@@ -13,8 +13,8 @@ use super::GpuError;
 use super::compose::WORKGROUP;
 use super::device::Gpu;
 use super::pipeline::Pipeline;
-use crate::cpu::pixel::Jitter;
-use crate::render::PixelFault;
+use crate::frame::PixelFault;
+use crate::jitter::Jitter;
 use assembly::Assembly;
 use plan::Plan;
 use slot::Slot;
@@ -79,7 +79,7 @@ pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
-    emit: &mut crate::render::Emit<'_>,
+    emit: &mut crate::frame::Emit<'_>,
 ) -> Result<BandTimes, BandError> {
     let (width, rows) = (frame.width, frame.rows.clone());
     let largest = largest_dispatch(gpu, pipeline, width, &rows);

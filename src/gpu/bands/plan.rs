@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::compose::WORKGROUP;
-use crate::cpu::pixel::Jitter;
+use crate::jitter::Jitter;
 
 /// A dispatch is made larger or smaller so that it takes about this long.
 const TARGET_SECONDS: f64 = 0.15;

@@ -10,7 +10,7 @@ use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::plan::Rectangle;
 use super::{BandTimes, OFFSET_BYTES};
-use crate::cpu::pixel::Jitter;
+use crate::jitter::Jitter;
 
 /// Buffers for one dispatch under way.
 #[derive(Debug)]
