@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use plumb::scene::{LoadError, Scene};
+use plumb::scene::{LoadError, Scene, remarks};
 use serde_json::{Value, json};
 
 use super::{Answer, say, source};
@@ -35,7 +35,12 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
             continue;
         }
         match loaded {
-            Ok(scene) => say::data(&format!("{name}: ok ({})\n", summary(&scene)))?,
+            Ok(scene) => {
+                say::data(&format!("{name}: ok ({})\n", summary(&scene)))?;
+                for remark in remarks(&scene) {
+                    say::data(&format!("  note: {remark}\n"))?;
+                }
+            }
             Err(error) => say::error(&error),
         }
     }
@@ -70,6 +75,7 @@ fn report(name: &str, loaded: &Result<Scene>) -> Value {
             "materials": scene.materials.len(),
             "textures": scene.textures.len(),
             "pixeldim": scene.camera.pixeldim,
+            "notes": remarks(scene),
             "errors": [],
         }),
         Err(error) => {

@@ -12,7 +12,7 @@ use plumb::cpu::pixel::Stages;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, PixelFault, Report, Settings};
-use plumb::scene::{Scene, list_model};
+use plumb::scene::{Scene, list_model, remarks};
 use serde::Serialize;
 
 use super::args::RenderOptions;
@@ -201,6 +201,11 @@ impl<'a> Job<'a> {
             Err(error) => return Err(self.explain(error)),
         };
         let finished = picture.finish()?;
+        if self.talks() {
+            remarks(&self.scene)
+                .iter()
+                .for_each(|remark| say::note(remark));
+        }
         if let Some(fallback) = report.fallback.as_ref().filter(|_| self.talks()) {
             say::note(fallback);
         }

@@ -19,6 +19,7 @@ mod names;
 mod number;
 mod parse;
 mod recover;
+mod remarks;
 mod slips;
 pub mod table;
 #[cfg(test)]
@@ -34,4 +35,5 @@ pub use model::{
     TextureMode,
 };
 pub use parse::parse;
+pub use remarks::remarks;
 pub use table::{MAX_PIXELDIM, PPLANE_SHADERS, PSPHERE_SHADERS};
