@@ -76,24 +76,15 @@ impl<'a> Stages<'a> {
         x: u32,
         y: u32,
     ) -> Result<Pixel, PixelFault> {
-        let pixel = attempt(&self.bounded, limits, sampling, x, y).or_else(|fault| match fault {
-            Fault::TooManyRays => Err(fault),
-            Fault::Undecided => {
-                let pairs = self
-                    .pairs
-                    .get_or_init(|| Prepared::new(self.scene, self.view));
-                attempt(pairs, limits, sampling, x, y)
-            }
-        });
-        let pixel = pixel.or_else(|fault| match fault {
-            Fault::TooManyRays => Err(fault),
-            Fault::Undecided => {
-                let plain = self
-                    .plain
-                    .get_or_init(|| Prepared::new(self.scene, self.view));
-                attempt(plain, limits, sampling, x, y)
-            }
-        });
+        let mut pixel = attempt(&self.bounded, limits, sampling, x, y);
+        if matches!(pixel, Err(Fault::Undecided)) {
+            let prepare = || Prepared::new(self.scene, self.view);
+            pixel = attempt(self.pairs.get_or_init(prepare), limits, sampling, x, y);
+        }
+        if matches!(pixel, Err(Fault::Undecided)) {
+            let prepare = || Prepared::new(self.scene, self.view);
+            pixel = attempt(self.plain.get_or_init(prepare), limits, sampling, x, y);
+        }
         match pixel {
             Ok(pixel) => Ok(pixel),
             // Not a number even so: such a pixel stays black.
