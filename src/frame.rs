@@ -12,13 +12,64 @@ pub struct Band {
     pub rgb: Vec<u8>,
     /// The values before quantising (1.0 is byte 255), in the same order, if they were asked for.
     pub values: Option<Vec<[f32; 3]>>,
+    /// What decided each pixel, in the same order, if it was asked for.
+    pub verdicts: Option<Vec<Stage>>,
 }
 
 /// Takes finished bands; an error ends the rendering.
 pub type Emit<'a> = dyn FnMut(&Band) -> io::Result<()> + Send + 'a;
 
-/// Value and bytes of a pixel.
-pub type Pixel = ([f32; 3], [u8; 3]);
+/// What decided a pixel, from the cheapest to the dearest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// The GPU, in f32, and it was sure.
+    Gpu,
+    /// f64 with error bounds.
+    Bounded,
+    /// Pairs of f64 with error bounds.
+    Pairs,
+    /// Intervals of many bits.
+    Multiprecision,
+    /// Exact arithmetic: the pixel lies on a border, which was proven.
+    Exact,
+    /// Nothing: it lies so near a border that it was presumed to lie on it.
+    Presumed,
+}
+
+impl Stage {
+    /// Every stage, in order; each stands at its own number.
+    pub const ALL: [Self; 6] = [
+        Self::Gpu,
+        Self::Bounded,
+        Self::Pairs,
+        Self::Multiprecision,
+        Self::Exact,
+        Self::Presumed,
+    ];
+
+    /// The word for it in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gpu => "gpu",
+            Self::Bounded => "f64",
+            Self::Pairs => "pairs",
+            Self::Multiprecision => "multiprecision",
+            Self::Exact => "tie",
+            Self::Presumed => "presumed",
+        }
+    }
+}
+
+/// A pixel that the CPU decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Decided {
+    /// The value before quantising: 1.0 is byte 255.
+    pub value: [f32; 3],
+    /// The bytes.
+    pub bytes: [u8; 3],
+    /// What decided them.
+    pub stage: Stage,
+}
 
 /// A pixel that needs more rays than allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

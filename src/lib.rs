@@ -7,13 +7,14 @@
 //!                                             │
 //!                                          prepare ─► Prepared (what depends on the scene alone, exact, then rounded)
 //!                                             │
-//!            gpu::features ─ gpu::compose ─ gpu::pack ─► gpu::device: dispatch ─┐
-//!                                             │                                 ├─► render: bands ─► image: PPM / PNG / EXR
-//!                                            cpu: the same tracer in Rust ──────┘
+//!            gpu::features ─ gpu::compose ─ gpu::pack ─► gpu::device: dispatch ── sure pixels ─┐
+//!                                             │                │ doubtful ones                  ├─► render: bands ─► image
+//!                                            cpu: the same tracer in Rust ◄── certify ──────────┘       PPM / PNG / EXR
 //! ```
 //!
 //! [`render::render`] runs the whole of it; `src/cli/` only turns arguments into such calls.
 
+pub mod certify;
 pub mod cpu;
 pub mod diagnostic;
 pub mod frame;

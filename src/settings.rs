@@ -3,6 +3,7 @@
 //! Stands below the tracers, which read it; `cli` makes it from arguments.
 
 use std::ops::Range;
+use std::path::PathBuf;
 
 use serde::Serialize;
 
@@ -17,6 +18,8 @@ pub struct Settings {
     pub screen_tolerance: f64,
     /// Which tracer.
     pub backend: Backend,
+    /// Whether every byte has to be the right one.
+    pub precision: Precision,
     /// Rays a pixel: 1 goes through its middle, more are spread and their mean is taken.
     pub samples: u32,
     /// How several samples are spread.
@@ -29,6 +32,12 @@ pub struct Settings {
     pub threads: Option<usize>,
     /// Whether bands carry the unquantised values too (for EXR).
     pub values: bool,
+    /// Whether bands tell what decided each pixel.
+    pub verdicts: bool,
+    /// Rows of a band; without, as many as take a moment. A band has fewer where a dispatch cannot have so many.
+    pub band_rows: Option<u32>,
+    /// The folder in which adapters that passed the self-test are remembered; without, it is run once a process.
+    pub cache: Option<PathBuf>,
 }
 
 impl Default for Settings {
@@ -42,7 +51,11 @@ impl Default for Settings {
             backend: Backend::Auto,
             adapter: None,
             threads: None,
+            precision: Precision::Certified,
             values: false,
+            verdicts: false,
+            band_rows: None,
+            cache: None,
         }
     }
 }
@@ -89,10 +102,21 @@ pub enum Backend {
     /// The GPU if there is one, else the CPU.
     #[default]
     Auto,
-    /// The GPU, or an error.
+    /// The GPU, or an error. Pixels that it leaves undecided go to the CPU, as does a frame that it got wrong.
     Gpu,
     /// The CPU.
     Cpu,
+}
+
+/// What is asked of the bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Every byte is the one that the rules define in exact arithmetic: what the GPU is not sure of, the CPU decides.
+    #[default]
+    Certified,
+    /// The GPU's f32 as it comes.
+    Fast,
 }
 
 /// How far rays are followed.

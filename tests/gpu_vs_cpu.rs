@@ -10,7 +10,7 @@ use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::trace::{Fault, Limits, Unwatched, ray_trace};
 use plumb::prepare::Prepared;
 use plumb::real::{Bounded, Real};
-use plumb::render::{Backend, render};
+use plumb::render::{Backend, Precision, Settings, render};
 
 /// Hard cases whose margins lie below what f32 resolves, with the share of sure pixels that may differ, in per cent.
 const BEYOND_F32: &[(&str, f64)] = &[
@@ -53,7 +53,11 @@ struct Row {
 fn measure(path: &std::path::Path) -> Row {
     let scene = common::read(path);
     let [width, height] = scene.camera.pixeldim;
-    let (gpu, report) = common::picture(&scene, &common::on(Backend::Gpu));
+    let fast = Settings {
+        precision: Precision::Fast,
+        ..common::on(Backend::Gpu)
+    };
+    let (gpu, report) = common::picture(&scene, &fast);
     assert_eq!(report.backend, Backend::Gpu);
     let (cpu, _) = common::picture(&scene, &common::on(Backend::Cpu));
     let bounds = Prepared::<Bounded>::new(&scene, 0.0);

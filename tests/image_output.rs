@@ -63,6 +63,7 @@ fn bands(picture: &Picture, heights: &[u32]) -> Vec<Band> {
             rows: start..end,
             rgb,
             values: Some(values),
+            verdicts: None,
         });
         end = start;
     }
@@ -404,6 +405,7 @@ fn a_part_of_a_picture_is_a_picture() {
             rows: 101..102,
             rgb: vec![1, 2, 3],
             values: None,
+            verdicts: None,
         })
         .unwrap();
     output
@@ -411,6 +413,7 @@ fn a_part_of_a_picture_is_a_picture() {
             rows: 100..101,
             rgb: vec![4, 5, 6],
             values: None,
+            verdicts: None,
         })
         .unwrap();
     output.finish().unwrap();
@@ -510,6 +513,7 @@ fn the_largest_png_is_begun_in_little_memory() {
             rows: row..row + 1,
             rgb: vec![row as u8; 3 * large as usize],
             values: None,
+            verdicts: None,
         };
         output.write(&band).unwrap();
     }

@@ -60,10 +60,10 @@ fn stated_pixels_are_rendered() {
                 assert_eq!(certain, want, "{name}: pixel ({x}, {y}) with bounds");
             }
             if !BEYOND_PAIRS.contains(&(name.as_str(), [x, y])) {
-                let (_, bytes) = stages
+                let decided = stages
                     .trace(&Limits::default(), Sampling::Once, x, y)
                     .unwrap();
-                assert_eq!(bytes, want, "{name}: pixel ({x}, {y})");
+                assert_eq!(decided.bytes, want, "{name}: pixel ({x}, {y})");
             }
         }
     }
@@ -81,8 +81,8 @@ fn a_wrong_statement_is_noticed() {
     let scene = common::read(&path);
     let stages = Stages::new(&scene, View::from(0.0));
     let [x, y, r, g, b] = stated(&std::fs::read_to_string(&path).unwrap())[0];
-    let (_, bytes) = stages
+    let decided = stages
         .trace(&Limits::default(), Sampling::Once, x, y)
         .unwrap();
-    assert_ne!(bytes, [(r ^ 1) as u8, g as u8, b as u8]);
+    assert_ne!(decided.bytes, [(r ^ 1) as u8, g as u8, b as u8]);
 }

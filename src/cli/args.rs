@@ -9,7 +9,7 @@ use clap::ValueEnum;
 use clap::builder::NonEmptyStringValueParser;
 use plumb::cpu::debug::Shown;
 use plumb::cpu::trace::Limits;
-use plumb::render::{Backend, Settings, Spread};
+use plumb::render::{Backend, Precision, Settings, Spread};
 use plumb::scene::Scene;
 
 /// The most pixels a side, as `pixeldim` has it.
@@ -137,9 +137,9 @@ written beside and renamed when it is whole; devices, pipes and links are writte
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureOptions,
-    /// Only rows A up to, not including, B, counted from the bottom; the picture has B−A rows
+    /// Only rows A up to, not including, B, counted from the bottom: 0..100, ..100, 380.. (the picture has B−A rows)
     #[arg(long, value_name = "A..B", value_parser = rows)]
-    pub(crate) rows: Option<Range<u32>>,
+    pub(crate) rows: Option<Rows>,
     /// Which tracer: the GPU if there is one, else the CPU (auto); the GPU or an error; the CPU
     #[arg(
         long,
@@ -152,9 +152,56 @@ written beside and renamed when it is whole; devices, pipes and links are writte
     /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`)
     #[arg(long, value_name = "PART", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) adapter: Option<String>,
-    /// CPU threads, if the CPU renders; all cores without
+    /// Every byte right, or the GPU's f32 as it comes
+    #[arg(
+        long,
+        value_name = "WHAT",
+        value_enum,
+        ignore_case = true,
+        default_value_t,
+        long_help = "\
+What is asked of the bytes.
+
+certified: every byte is the one that the scene means in exact arithmetic, the same from every GPU, driver and CPU. The \
+GPU tells with each pixel whether it is sure of it; those that it is not sure of, well under one in a hundred as a rule, \
+are decided on the CPU, in the end exactly. The GPU is tested before it is trusted, and some of the pixels that it is \
+sure of are computed again. EXR holds the f32 nearest each exact value; all of it is computed on the CPU.
+
+fast: the GPU's f32 as it comes. A few bytes in a hundred thousand differ by one, which ones depends on the driver. With \
+--backend cpu there is no difference."
+    )]
+    pub(crate) precision: PrecisionName,
+    /// Exit 1 if any pixel is presumed to lie on a border, not proven
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// A second picture that shows what decided each pixel, .png or .ppm
+    #[arg(
+        long,
+        value_name = "OUT",
+        long_help = "\
+A second picture of the same size, .png or .ppm, that shows what decided each pixel:
+
+  dark grey  the GPU, which was sure
+  blue       f64 with error bounds, on the CPU
+  green      pairs of f64
+  yellow     intervals of many bits
+  white      exact arithmetic: the pixel lies on a border exactly
+  red        presumed: nearer to a border than 1,024 bits can tell"
+    )]
+    pub(crate) verdicts: Option<PathBuf>,
+    /// CPU threads; all cores without
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
+    /// Rows of a band, the piece in which a picture is rendered and written; it changes no byte
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..),
+        long_help = "\
+Rows of a band, the piece in which a picture is rendered and written. Without it bands are as high as takes a moment. It \
+changes no byte, only memory and time; a band has fewer rows where so many would not fit."
+    )]
+    pub(crate) band_rows: Option<u32>,
     /// The notes' listing of pixels on stderr: any of pix, hit, drgb, irgb, offset
     #[arg(
         long,
@@ -180,15 +227,7 @@ impl RenderOptions {
     pub(crate) fn settings(&self, scene: &Scene, values: bool) -> Result<Settings> {
         self.picture.check(scene)?;
         let height = scene.camera.pixeldim[1];
-        if let Some(rows) = &self.rows
-            && rows.end > height
-        {
-            bail!(
-                "--rows {}..{}: the picture has {height} rows, so B is at most {height} (rows count from 0 at the bottom)",
-                rows.start,
-                rows.end
-            );
-        }
+        let rows = self.rows.map(|rows| rows.of(height)).transpose()?;
         if self.adapter.is_some() && self.backend == BackendName::Cpu {
             bail!(
                 "--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out"
@@ -199,12 +238,20 @@ impl RenderOptions {
                 "--debug lists the ray through the middle of a pixel, and --samples takes others: leave one of them out"
             );
         }
+        if self.strict && self.precision == PrecisionName::Fast {
+            bail!(
+                "--strict asks that every byte is proven, and --precision fast proves none: leave one of them out"
+            );
+        }
         Ok(Settings {
-            rows: self.rows.clone(),
+            rows,
             backend: self.backend.into(),
+            precision: self.precision.into(),
             adapter: self.adapter.clone(),
             threads: self.threads,
             values,
+            verdicts: self.verdicts.is_some(),
+            band_rows: self.band_rows,
             ..self.picture.settings()
         })
     }
@@ -237,6 +284,23 @@ impl From<BackendName> for Backend {
             BackendName::Auto => Self::Auto,
             BackendName::Gpu => Self::Gpu,
             BackendName::Cpu => Self::Cpu,
+        }
+    }
+}
+
+/// What is asked of the bytes, by name on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum PrecisionName {
+    #[default]
+    Certified,
+    Fast,
+}
+
+impl From<PrecisionName> for Precision {
+    fn from(name: PrecisionName) -> Self {
+        match name {
+            PrecisionName::Certified => Self::Certified,
+            PrecisionName::Fast => Self::Fast,
         }
     }
 }
@@ -298,21 +362,54 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     sides.ok_or_else(|| "say columns x rows, each 1 to 1000000, like 640x480".to_owned())
 }
 
-/// `0..120`.
-fn rows(text: &str) -> Result<Range<u32>, String> {
-    let bounds = text
-        .split_once("..")
-        .and_then(|(a, b)| Some((a.parse::<u32>().ok()?, b.parse::<u32>().ok()?)));
-    match bounds {
-        Some((start, end)) if start < end => Ok(start..end),
-        Some(_) => {
-            Err("A must be less than B: A is the first row, B the row after the last".to_owned())
+/// Rows of a picture whose height is not known yet: from the first, or from 0; to before the last, or to the top.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Rows {
+    start: u32,
+    end: Option<u32>,
+}
+
+impl Rows {
+    /// The rows in a picture so high.
+    fn of(self, height: u32) -> Result<Range<u32>> {
+        let Self { start, end } = self;
+        if let Some(end) = end.filter(|end| *end > height) {
+            bail!(
+                "--rows {start}..{end}: the picture has {height} rows, so B is at most {height} (rows count from 0 at the bottom)"
+            );
         }
-        None => Err(
-            "say the first row and the row after the last, from 0 at the bottom, like 0..120"
-                .to_owned(),
-        ),
+        if start >= height {
+            bail!(
+                "--rows {start}..: the picture has {height} rows, so A is at most {} (rows count from 0 at the bottom)",
+                height - 1
+            );
+        }
+        Ok(start..end.unwrap_or(height))
     }
+}
+
+/// `0..120`, `..120`, `40..`.
+fn rows(text: &str) -> Result<Rows, String> {
+    let teach = || {
+        "say the first row and the row after the last, from 0 at the bottom, like 0..120; ..120 starts at the bottom, 40.. \
+         ends at the top"
+            .to_owned()
+    };
+    let (a, b) = text
+        .split_once("..")
+        .filter(|bounds| *bounds != ("", ""))
+        .ok_or_else(teach)?;
+    let bound = |text: &str| match text {
+        "" => Ok(None),
+        text => text.parse::<u32>().map(Some).map_err(|_| teach()),
+    };
+    let (start, end) = (bound(a)?.unwrap_or(0), bound(b)?);
+    if end.is_some_and(|end| start >= end) {
+        return Err(
+            "A must be less than B: A is the first row, B the row after the last".to_owned(),
+        );
+    }
+    Ok(Rows { start, end })
 }
 
 /// A finite number.
@@ -370,12 +467,17 @@ mod tests {
 
     #[test]
     fn row_ranges() {
-        assert_eq!(rows("0..120"), Ok(0..120));
+        for (text, start, end) in [
+            ("0..120", 0, Some(120)),
+            ("..5", 0, Some(5)),
+            ("7..", 7, None),
+        ] {
+            assert_eq!(rows(text), Ok(Rows { start, end }));
+        }
         for bad in [
             "",
             "..",
-            "1..",
-            "..1",
+            "..0",
             "5..5",
             "6..5",
             "-1..5",
@@ -385,6 +487,16 @@ mod tests {
         ] {
             assert!(rows(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn rows_are_of_the_picture() {
+        let of = |text: &str| rows(text).unwrap().of(30).ok();
+        assert_eq!(of("..5"), Some(0..5));
+        assert_eq!(of("25.."), Some(25..30));
+        assert_eq!(of("0..30"), Some(0..30));
+        assert_eq!(of("0..31"), None);
+        assert_eq!(of("30.."), None);
     }
 
     #[test]

@@ -53,6 +53,16 @@ impl Picture {
         Ok(self.output.insert(output))
     }
 
+    /// Where it goes.
+    pub(crate) fn target(&self) -> &Target {
+        &self.target
+    }
+
+    /// Whether dropping it leaves everything as it was, so that it can be begun anew.
+    pub(crate) fn can_restart(&self) -> bool {
+        self.output.as_ref().is_none_or(Output::is_beside)
+    }
+
     /// Writes the next rows.
     pub(crate) fn write(&mut self, band: &Band) -> io::Result<()> {
         self.opened().map_err(io::Error::other)?.write(band)

@@ -200,7 +200,7 @@ impl<'a> Probe<'a> {
         // As rendering has them, whatever it does to be sure of them.
         let stages = Stages::new(self.scene, self.view);
         let bytes = match stages.trace(&self.limits, sampling, self.x, self.y) {
-            Ok((_, bytes)) => bytes,
+            Ok(decided) => decided.bytes,
             Err(_) => return Ok(Err(Fault::TooManyRays)),
         };
         let [r, g, b] = bytes;

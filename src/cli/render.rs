@@ -2,16 +2,18 @@
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
+use std::iter;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow, bail};
+use plumb::certify::{Stage, verdict};
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::Stages;
-use plumb::image::{Finished, Format, Metadata, Target};
+use plumb::image::{Finished, Format, Metadata, OutputError, Target};
 use plumb::prepare::Prepared;
-use plumb::render::{self, Backend, PixelFault, Report, Settings};
+use plumb::render::{self, Backend, Band, PixelFault, Precision, Report, Settings};
 use plumb::scene::{Scene, list_model, remarks};
 use serde::Serialize;
 
@@ -45,6 +47,12 @@ struct Job<'a> {
     file: Option<&'a Path>,
     scene: Scene,
     options: &'a RenderOptions,
+}
+
+/// The picture, and the one of its verdicts, on their way out.
+struct Outputs {
+    picture: Picture,
+    verdicts: Option<Picture>,
 }
 
 /// What `--json` prints.
@@ -83,6 +91,43 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         say::talk(&String::from_utf8_lossy(&listing));
     }
     job.run()
+}
+
+impl Outputs {
+    /// Writes the next rows.
+    fn write(&mut self, band: &Band) -> io::Result<()> {
+        if let Some(verdicts) = &mut self.verdicts
+            && let Some(painted) = verdict::paint(band)
+        {
+            verdicts.write(&painted).map_err(|source| {
+                io::Error::other(OutputError::Write {
+                    target: verdicts.target().clone(),
+                    source,
+                })
+            })?;
+        }
+        self.picture.write(band)
+    }
+
+    /// Whether nothing has reached its place before the end.
+    fn can_restart(&self) -> bool {
+        let mut all = iter::once(&self.picture).chain(&self.verdicts);
+        all.all(Picture::can_restart)
+    }
+
+    /// What an error of [`Outputs::write`] means.
+    fn failed(self, source: io::Error) -> anyhow::Error {
+        self.picture.failed(source)
+    }
+
+    /// Gives both their names.
+    fn finish(self) -> Result<Finished, OutputError> {
+        let finished = self.picture.finish()?;
+        if let Some(verdicts) = self.verdicts {
+            verdicts.finish()?;
+        }
+        Ok(finished)
+    }
 }
 
 impl<'a> Job<'a> {
@@ -179,35 +224,36 @@ impl<'a> Job<'a> {
         let format = target.format()?;
         let settings = self.options.settings(&self.scene, format.wants_values())?;
         self.check(&target)?;
-        let [width, height] = self.scene.camera.pixeldim;
+        let [_, height] = self.scene.camera.pixeldim;
         let rows = settings.rows.clone().unwrap_or(0..height);
-        let mut picture = Picture::open(
-            &target,
-            format,
-            width,
-            rows.len() as u32,
-            self.metadata(&rows),
-        )?;
-        let mut progress = Progress::new(rows.len() as u64, self.talks());
-        let rendered = render::render(&self.scene, &settings, &mut |band| {
-            picture.write(band)?;
-            progress.add(band.rows.len() as u64);
-            Ok(())
-        });
-        progress.clear();
+        let mut outputs = self.open(&target, format, &rows)?;
+        let rendered = match self.render(&settings, &mut outputs) {
+            // What is written beside can be begun anew; what was written through cannot be taken back.
+            Err(render::Error::Revoked(revoked)) if outputs.can_restart() => {
+                drop(outputs);
+                outputs = self.open(&target, format, &rows)?;
+                let cpu = Settings {
+                    backend: Backend::Cpu,
+                    ..settings.clone()
+                };
+                self.render(&cpu, &mut outputs).map(|report| Report {
+                    revoked: Some(revoked),
+                    ..report
+                })
+            }
+            rendered => rendered,
+        };
         let report = match rendered {
             Ok(report) => report,
-            Err(render::Error::Emit(source)) => return Err(picture.failed(source)),
+            Err(render::Error::Emit(source)) => return Err(outputs.failed(source)),
             Err(error) => return Err(self.explain(error)),
         };
-        let finished = picture.finish()?;
+        let finished = outputs.finish()?;
         if self.talks() {
             remarks(&self.scene)
                 .iter()
                 .for_each(|remark| say::note(remark));
-        }
-        if let Some(fallback) = report.fallback.as_ref().filter(|_| self.talks()) {
-            say::note(fallback);
+            told(&report).iter().for_each(|line| say::note(line));
         }
         self.list(&settings, &report)?;
         self.report(&target, format, &report, &finished)?;
@@ -217,7 +263,62 @@ impl<'a> Job<'a> {
                 self.summary(&target, &report, start.elapsed())
             ));
         }
-        Ok(Answer::Yes)
+        Ok(if self.options.strict && report.presumed > 0 {
+            Answer::No
+        } else {
+            Answer::Yes
+        })
+    }
+
+    /// Opens the picture, and the one of its verdicts if it was asked for.
+    fn open(&self, target: &Target, format: Format, rows: &Range<u32>) -> Result<Outputs> {
+        let width = self.scene.camera.pixeldim[0];
+        let open = |target: &Target, format| {
+            let metadata = self.metadata(rows);
+            Picture::open(target, format, width, rows.len() as u32, metadata)
+        };
+        Ok(Outputs {
+            picture: open(target, format)?,
+            verdicts: match self.verdicts(target)? {
+                Some((target, format)) => Some(open(&target, format)?),
+                None => None,
+            },
+        })
+    }
+
+    /// Where the verdicts go.
+    fn verdicts(&self, picture: &Target) -> Result<Option<(Target, Format)>> {
+        let Some(path) = &self.options.verdicts else {
+            return Ok(None);
+        };
+        let target = Target::from_argument(path.as_os_str());
+        let format = target.format()?;
+        if target.is_stdout() || format.wants_values() {
+            bail!("--verdicts is a picture of bytes in a file: .png or .ppm");
+        }
+        if let Target::Path(other) = picture
+            && (other == path || source::is_same_file(other, path))
+        {
+            bail!(
+                "{} is the picture itself: give the verdicts another name",
+                path.display()
+            );
+        }
+        self.check(&target)?;
+        Ok(Some((target, format)))
+    }
+
+    fn render(&self, settings: &Settings, outputs: &mut Outputs) -> Result<Report, render::Error> {
+        let [_, height] = self.scene.camera.pixeldim;
+        let rows = settings.rows.clone().unwrap_or(0..height);
+        let mut progress = Progress::new(rows.len() as u64, self.talks());
+        let rendered = render::render(&self.scene, settings, &mut |band| {
+            outputs.write(band)?;
+            progress.add(band.rows.len() as u64);
+            Ok(())
+        });
+        progress.clear();
+        rendered
     }
 
     /// What changes the bytes of a picture; no date and no path, so that the same picture is the same file.
@@ -324,7 +425,7 @@ impl<'a> Job<'a> {
         say::data(&text)
     }
 
-    /// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s`.
+    /// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, pairs 5, tie 2`.
     fn summary(&self, target: &Target, report: &Report, took: Duration) -> String {
         let [start, end] = report.rows;
         let mut size = format!("{}×{}", report.width, end - start);
@@ -338,6 +439,55 @@ impl<'a> Job<'a> {
             }
             _ => format!("CPU, {}", say::count(report.threads.unwrap_or(1), "thread")),
         };
-        format!("{target}: {size}, {tracer}, {:.2} s", took.as_secs_f64())
+        let seconds = took.as_secs_f64();
+        format!(
+            "{target}: {size}, {tracer}, {seconds:.2} s; {}",
+            decided(report)
+        )
     }
+}
+
+/// What decided the pixels, in short.
+fn decided(report: &Report) -> String {
+    let stages = Stage::ALL[1..]
+        .iter()
+        .filter(|stage| report.decided.count(**stage) > 0)
+        .map(|stage| format!("{} {}", stage.name(), report.decided.count(*stage)))
+        .collect::<Vec<_>>()
+        .join(", ");
+    match (report.precision, report.backend, report.refined) {
+        (Precision::Fast, Backend::Gpu, 0) => "fast, not certified".into(),
+        (Precision::Fast, Backend::Gpu, refined) => {
+            format!("fast, not certified, but for {refined} on the CPU")
+        }
+        (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
+        (Precision::Certified, Backend::Gpu, _) => {
+            let percent = report.refined_percent;
+            format!("certified, {percent:.2} % doubtful: {stages}")
+        }
+        _ => format!("certified: {stages}"),
+    }
+}
+
+/// What has to be said of a rendering beside the summary.
+fn told(report: &Report) -> Vec<String> {
+    let mut lines: Vec<String> = report.fallback.iter().cloned().collect();
+    if let Some(revoked) = &report.revoked {
+        lines.push(format!(
+            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb doctor`"
+        ));
+    }
+    if report.presumed > 0 {
+        let at = |[x, y]: &[u32; 2]| format!("({x}, {y})");
+        let mut named: Vec<String> = report.presumed_at.iter().map(at).collect();
+        if report.presumed > named.len() as u64 {
+            named.push("…".into());
+        }
+        lines.push(format!(
+            "{} so near a border that it is presumed, not proven, to lie on it: {}",
+            say::count(report.presumed as usize, "pixel"),
+            named.join(", ")
+        ));
+    }
+    lines
 }

@@ -81,9 +81,10 @@ pub fn list_pixels(
                 write!(to, "{name:<12} DRGB:{}", triple(traced.color.approx(), 2))?;
             }
             if shown.irgb {
-                let (_, [r, g, b]) = stages
+                let decided = stages
                     .trace(limits, Sampling::Once, x, y)
                     .map_err(io::Error::other)?;
+                let [r, g, b] = decided.bytes;
                 write!(to, " IRGB:({r:5}, {g:5}, {b:5})")?;
             }
             if shown.offset {

@@ -1,14 +1,11 @@
-//! A pixel from its samples: the notes' `make_pixel`, and whole bands of pixels on all cores.
+//! A pixel from its samples: the notes' `make_pixel`, in the number types that it takes to be sure of it.
 
-use std::ops::Range;
 use std::sync::OnceLock;
-
-use rayon::prelude::*;
 
 use super::camera::camera_setpix;
 use super::trace::{Fault, Limits, Unwatched, ray_trace};
-use crate::frame::{Band, Pixel, PixelFault};
-use crate::jitter::{self, Jitter, Sampling};
+use crate::frame::{Decided, PixelFault, Stage};
+use crate::jitter::{self, Sampling};
 use crate::prepare::{Prepared, View};
 use crate::real::{Bounded, DoubleDouble, Real, V3};
 use crate::scene::Scene;
@@ -75,20 +72,31 @@ impl<'a> Stages<'a> {
         sampling: Sampling<'_>,
         x: u32,
         y: u32,
-    ) -> Result<Pixel, PixelFault> {
+    ) -> Result<Decided, PixelFault> {
         let mut pixel = attempt(&self.bounded, limits, sampling, x, y);
+        let mut stage = Stage::Bounded;
         if matches!(pixel, Err(Fault::Undecided)) {
             let prepare = || Prepared::new(self.scene, self.view);
             pixel = attempt(self.pairs.get_or_init(prepare), limits, sampling, x, y);
+            stage = Stage::Pairs;
         }
         if matches!(pixel, Err(Fault::Undecided)) {
             let prepare = || Prepared::new(self.scene, self.view);
             pixel = attempt(self.plain.get_or_init(prepare), limits, sampling, x, y);
+            stage = Stage::Presumed;
         }
         match pixel {
-            Ok(pixel) => Ok(pixel),
+            Ok((value, bytes)) => Ok(Decided {
+                value,
+                bytes,
+                stage,
+            }),
             // Not a number even so: such a pixel stays black.
-            Err(Fault::Undecided) => Ok(([0.0; 3], [0; 3])),
+            Err(Fault::Undecided) => Ok(Decided {
+                value: [0.0; 3],
+                bytes: [0; 3],
+                stage,
+            }),
             Err(Fault::TooManyRays) => Err(PixelFault {
                 x,
                 y,
@@ -104,73 +112,9 @@ fn attempt<R: Real>(
     sampling: Sampling<'_>,
     x: u32,
     y: u32,
-) -> Result<Pixel, Fault> {
+) -> Result<([f32; 3], [u8; 3]), Fault> {
     let v = make_pixel(scene, limits, sampling, x, y)?;
     let bytes = camera_setpix(v)?;
     let v = v.approx();
     Ok(([v.x as f32, v.y as f32, v.z as f32], bytes))
-}
-
-/// Traces a band on the CPU, pixels in parallel on the current thread pool.
-pub fn make_band(
-    scene: &Stages<'_>,
-    limits: &Limits,
-    jitter: &Jitter,
-    width: u32,
-    rows: Range<u32>,
-    values: bool,
-) -> Result<Band, PixelFault> {
-    let width = width as usize;
-    let pixels = width * (rows.end - rows.start) as usize;
-    let mut rgb = vec![0; 3 * pixels];
-    let mut floats = if values {
-        vec![[0.0; 3]; pixels]
-    } else {
-        Vec::new()
-    };
-    // Pieces of rows, small enough to share out, large enough not to cost.
-    let piece = (pixels / (8 * rayon::current_num_threads()))
-        .clamp(64, 8192)
-        .min(width);
-    let top = rows.end - 1;
-    // Beside each line of bytes its line of values, or nothing.
-    let value_lines: Vec<Option<&mut [[f32; 3]]>> =
-        split(values.then_some(&mut floats[..]), width, rows.len());
-    rgb.par_chunks_mut(3 * width)
-        .zip(value_lines)
-        .enumerate()
-        .try_for_each(|(line, (bytes, values))| {
-            let y = top - line as u32;
-            let offsets = jitter.row(y);
-            let pieces = split(values, piece, width.div_ceil(piece));
-            bytes
-                .par_chunks_mut(3 * piece)
-                .zip(pieces)
-                .enumerate()
-                .try_for_each(|(k, (bytes, mut values))| {
-                    for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                        let x = k * piece + i;
-                        let sampling = jitter.pixel(offsets.as_deref(), width, x);
-                        let (value, three) = scene.trace(limits, sampling, x as u32, y)?;
-                        pixel.copy_from_slice(&three);
-                        if let Some(values) = &mut values {
-                            values[i] = value;
-                        }
-                    }
-                    Ok(())
-                })
-        })?;
-    Ok(Band {
-        rows,
-        rgb,
-        values: values.then_some(floats),
-    })
-}
-
-/// Pieces of `size`, or as many nothings.
-fn split<T>(values: Option<&mut [T]>, size: usize, count: usize) -> Vec<Option<&mut [T]>> {
-    match values {
-        Some(values) => values.chunks_mut(size).map(Some).collect(),
-        None => (0..count).map(|_| None).collect(),
-    }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::pack::{Kind, Packed};
 use crate::prepare::exact::two_to;
-use crate::settings::{Settings, Spread};
+use crate::settings::{Precision, Settings, Spread};
 
 /// Which parts of the shader a scene needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,6 +27,8 @@ pub struct FeatureSet {
     pub kinds: BTreeSet<Kind>,
     /// The unquantised values are wanted too.
     pub values: bool,
+    /// Pixels come with a verdict, sure or doubtful.
+    pub certified: bool,
     /// Rays a pixel.
     pub samples: u32,
     /// The samples are spread as the course's program did.
@@ -92,6 +94,7 @@ impl FeatureSet {
             unrolled: !tree && (1..=UNROLLED_OBJECTS).contains(&objects),
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
+            certified: settings.precision == Precision::Certified,
             samples: settings.samples,
             course: settings.samples > 1 && settings.jitter == Spread::Course,
             lanes,
@@ -208,6 +211,7 @@ impl FeatureSet {
             ("position", is_lit || tiled || textured || pplane),
             ("from_center", psphere || lit.spheres),
             ("values", self.values),
+            ("certified", self.certified),
             ("samples", any && self.samples > 1),
             ("course", any && self.course),
             ("counted", any && (is_lit || self.bvh || self.samples > 1)),

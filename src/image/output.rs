@@ -204,6 +204,12 @@ impl Output {
         })
     }
 
+    /// Whether nothing reaches the target before [`finish`](Output::finish); devices, pipes and stdout are written through.
+    #[must_use]
+    pub fn is_beside(&self) -> bool {
+        self.to.sink.is_beside()
+    }
+
     /// Writes the next rows below those that were written.
     ///
     /// # Errors

@@ -40,6 +40,7 @@ impl Picture {
             rows: 0..self.height,
             rgb: self.rgb,
             values: None,
+            verdicts: None,
         }
     }
 }

@@ -112,6 +112,11 @@ impl Sink {
         }
     }
 
+    /// Whether nothing reaches the target before the end.
+    pub(super) fn is_beside(&self) -> bool {
+        !matches!(self.ending, Ending::Through)
+    }
+
     /// Everything written becomes the target.
     pub(super) fn commit(self) -> io::Result<()> {
         let mut file = self

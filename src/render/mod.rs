@@ -2,6 +2,7 @@
 //!
 //! Stands between the tracers (`gpu`, `cpu`) and what takes the rows (`image`, the preview, a test).
 
+mod finish;
 mod job;
 
 use std::io;
@@ -9,14 +10,16 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::gpu::bands::BandError;
+use crate::certify::pixels::Tracer;
+use crate::certify::{Stage, StageSeconds, Tally};
+use crate::gpu::device::Gpu;
 use crate::gpu::{self, GpuError};
 use crate::prepare::View;
 use crate::scene::Scene;
 use job::Job;
 
 pub use crate::frame::{Band, Emit, PixelFault};
-pub use crate::settings::{Backend, Settings, Spread};
+pub use crate::settings::{Backend, Precision, Settings, Spread};
 
 /// How a rendering went: what `--json` prints.
 #[derive(Debug, Clone, Serialize)]
@@ -35,20 +38,56 @@ pub struct Report {
     pub jitter: Option<Spread>,
     /// The longest path, in world units, if there were lights to make paths.
     pub max_path: Option<f64>,
+    /// What was asked of the bytes.
+    pub precision: Precision,
     /// Which tracer rendered: `gpu` or `cpu`.
     pub backend: Backend,
     /// Adapter and driver, if the GPU rendered.
     pub adapter: Option<String>,
     /// Why the CPU rendered although the GPU was welcome.
     pub fallback: Option<String>,
-    /// CPU threads used, if the CPU rendered.
+    /// Why the CPU rendered the frame once more after the GPU: a pixel that the GPU was sure of, and got wrong.
+    pub revoked: Option<String>,
+    /// CPU threads that were there to be used.
     pub threads: Option<usize>,
-    /// Pixels that the GPU handed to the CPU.
+    /// Pixels rendered.
+    pub pixels: u64,
+    /// Pixels that the GPU handed to the CPU, because it was in doubt or had no room.
     pub refined: u64,
+    /// The same, in hundredths of all pixels.
+    pub refined_percent: f64,
+    /// How many pixels each stage decided.
+    pub decided: Tally,
+    /// Pixels proven to lie on a border exactly.
+    pub ties: u64,
+    /// Pixels so near a border that they are presumed to lie on it.
+    pub presumed: u64,
+    /// Column and row (from the bottom) of the first of them.
+    pub presumed_at: Vec<[u32; 2]>,
+    /// Pixels that the GPU was sure of, computed again on the CPU and found right.
+    pub spot_checks: u64,
     /// Number of bands.
     pub bands: u32,
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+impl Report {
+    /// Takes over what decided the pixels.
+    fn count(&mut self, tally: &Tally) {
+        self.pixels = tally.pixels();
+        self.refined = if self.backend == Backend::Gpu {
+            self.pixels - tally.count(Stage::Gpu)
+        } else {
+            0
+        };
+        self.refined_percent = 100.0 * self.refined as f64 / self.pixels.max(1) as f64;
+        self.ties = tally.count(Stage::Exact);
+        self.presumed = tally.count(Stage::Presumed);
+        self.presumed_at = tally.presumed_at().to_vec();
+        self.seconds.stages = tally.times();
+        self.decided = tally.clone();
+    }
 }
 
 /// Where the time of a rendering went, in seconds.
@@ -66,8 +105,16 @@ pub struct Seconds {
     pub kernel: f64,
     /// Copying pictures back and waiting for them, the kernel's own time apart.
     pub readback: f64,
-    /// Handing bands on: quantising, encoding, writing.
+    /// Deciding what the GPU left undecided, while it renders the next bands.
+    pub refine: f64,
+    /// Computing again some of what it was sure of, likewise.
+    pub spot_checks: f64,
+    /// Handing bands on: quantising, encoding, writing; likewise.
     pub emit: f64,
+    /// That the GPU's side waited for these three.
+    pub held: f64,
+    /// CPU time for pixels decided one by one, of all threads together, by the stage that decided them.
+    pub stages: StageSeconds,
     /// All of the above and what lies between.
     pub total: f64,
 }
@@ -87,6 +134,11 @@ pub enum Error {
         /// Rows of the picture.
         height: u32,
     },
+    /// Certified values, from the GPU and nothing else.
+    #[error(
+        "certified values (EXR) are computed on the CPU, all of them: leave out --backend gpu, or take the GPU's own f32 with --precision fast"
+    )]
+    Values,
     /// A sample needs more rays than allowed.
     #[error(transparent)]
     TooManyRays(#[from] PixelFault),
@@ -96,19 +148,12 @@ pub enum Error {
     /// The thread pool would not start.
     #[error("the CPU threads cannot be started: {0}")]
     Threads(String),
+    /// The GPU was sure of a pixel and wrong, and so are rows that were handed on before that was found.
+    #[error("{0}; rows that were handed on before are wrong too")]
+    Revoked(String),
     /// What takes the bands said no.
     #[error(transparent)]
     Emit(#[from] io::Error),
-}
-
-impl From<BandError> for Error {
-    fn from(error: BandError) -> Self {
-        match error {
-            BandError::Gpu(error) => Self::Gpu(error),
-            BandError::Pixel(error) => Self::TooManyRays(error),
-            BandError::Emit(error) => Self::Emit(error),
-        }
-    }
 }
 
 /// What to install where there is no adapter.
@@ -122,7 +167,11 @@ pub fn install_hint() -> &'static str {
     }
 }
 
-/// Renders `scene` and hands each finished band to `emit`, from the top of the picture down.
+/// Renders `scene` and hands each finished band to `emit`, from the top of the picture down. `emit` may be called on another
+/// thread: one band is finished while the next one is rendered.
+///
+/// # Errors
+/// Any [`Error`]. After [`Error::Revoked`] alone what was handed on is wrong, and the CPU will do better.
 pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result<Report, Error> {
     let start = Instant::now();
     let [width, height] = scene.camera.pixeldim;
@@ -142,32 +191,42 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
         samples: settings.samples,
         jitter: (settings.samples > 1).then_some(settings.jitter),
         max_path: (!scene.lights.is_empty()).then_some(settings.limits.max_path),
+        precision: settings.precision,
         backend: Backend::Cpu,
         adapter: None,
         fallback: None,
+        revoked: None,
         threads: None,
+        pixels: 0,
         refined: 0,
+        refined_percent: 0.0,
+        decided: Tally::default(),
+        ties: 0,
+        presumed: 0,
+        presumed_at: Vec::new(),
+        spot_checks: 0,
         bands: 0,
         seconds: Seconds::default(),
     };
-    let gpu = match settings.backend {
-        Backend::Cpu => None,
-        Backend::Gpu => Some(gpu::device::open(settings.adapter.as_deref())?),
-        Backend::Auto => match gpu::device::open(settings.adapter.as_deref()) {
-            Ok(gpu) => Some(gpu),
-            // Without any GPU the CPU gives the same picture; a GPU that was named has to be there.
-            Err(error @ (GpuError::NoAdapter | GpuError::Device { .. })) => {
-                report.fallback = Some(format!("{error}, so the CPU renders; {}", install_hint()));
-                None
-            }
-            Err(error) => return Err(error.into()),
-        },
-    };
+    let gpu = open_gpu(settings, &mut report)?;
+    let view = View::new(settings.screen_tolerance, settings.samples);
+    let jitter = settings.sampling(width, rows.end);
+    let tracer = Tracer::new(scene, view, settings.sample_limits(), &jitter, width);
+    let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build();
+    let pool = settings.threads.map(threads).transpose();
+    let pool = pool.map_err(|error| Error::Threads(error.to_string()))?;
+    report.threads = Some(
+        pool.as_ref()
+            .map_or_else(rayon::current_num_threads, |pool| {
+                pool.current_num_threads()
+            }),
+    );
     let job = Job {
         scene,
-        view: View::new(settings.screen_tolerance, settings.samples),
-        jitter: settings.sampling(width, rows.end),
-        limits: settings.sample_limits(),
+        view,
+        jitter: &jitter,
+        tracer: &tracer,
+        pool: pool.as_ref(),
         width,
         rows,
         settings,
@@ -188,4 +247,32 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     }
     report.seconds.total = start.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// The GPU to render on; none if the CPU is to, and why.
+fn open_gpu(settings: &Settings, report: &mut Report) -> Result<Option<Gpu>, Error> {
+    if settings.backend == Backend::Cpu {
+        return Ok(None);
+    }
+    if settings.values && settings.precision == Precision::Certified {
+        if settings.backend == Backend::Gpu {
+            return Err(Error::Values);
+        }
+        report.fallback = Some(
+            "certified values are computed on the CPU, all of them; --precision fast takes the GPU's own f32"
+                .into(),
+        );
+        return Ok(None);
+    }
+    match gpu::device::open(settings.adapter.as_deref()) {
+        Ok(gpu) => Ok(Some(gpu)),
+        // Without any GPU the CPU gives the same picture; a GPU that was named has to be there.
+        Err(error @ (GpuError::NoAdapter | GpuError::Device { .. }))
+            if settings.backend == Backend::Auto =>
+        {
+            report.fallback = Some(format!("{error}, so the CPU renders; {}", install_hint()));
+            Ok(None)
+        }
+        Err(error) => Err(error.into()),
+    }
 }

@@ -1,19 +1,23 @@
-//! The band under way: rectangles of pixels come in, a finished band goes out, undecided pixels decided by the CPU.
-
-use rayon::prelude::*;
+//! The band under way: rectangles of pixels come in, a band goes out, with the places of the pixels that are in doubt.
 
 use super::plan::Rectangle;
-use super::{BandTimes, Refine};
-use crate::frame::{Band, PixelFault};
+use crate::frame::Band;
+
+/// A band as the GPU has it.
+#[derive(Debug)]
+pub struct Rendered {
+    /// Its pixels, without verdicts.
+    pub band: Band,
+    /// The places of the pixels that the GPU leaves to the CPU, counted from the band's top left, in rising order.
+    pub doubtful: Vec<u32>,
+}
 
 /// The band under way, put together from its rectangles.
 #[derive(Debug)]
 pub(super) struct Assembly {
     width: usize,
     values: bool,
-    band: Option<Band>,
-    /// Places in the band that the CPU has to decide.
-    undecided: Vec<usize>,
+    under_way: Option<Rendered>,
     complete: bool,
 }
 
@@ -22,20 +26,24 @@ impl Assembly {
         Self {
             width: width as usize,
             values,
-            band: None,
-            undecided: Vec::new(),
+            under_way: None,
             complete: false,
         }
     }
 
-    /// Copies a rectangle's pixels to their place.
+    /// Copies a rectangle's pixels to their place. Each comes with its verdict in its highest byte, 0 if it is sure: the
+    /// bytes below it have to be taken apart anyway.
     pub(super) fn take(&mut self, rectangle: &Rectangle, bytes: &[u8]) {
         let rows = (rectangle.band.end - rectangle.band.start) as usize;
         let pixels = rows * self.width;
-        let band = self.band.get_or_insert_with(|| Band {
-            rows: rectangle.band.clone(),
-            rgb: vec![0; 3 * pixels],
-            values: self.values.then(|| vec![[0.0; 3]; pixels]),
+        let Rendered { band, doubtful } = self.under_way.get_or_insert_with(|| Rendered {
+            band: Band {
+                rows: rectangle.band.clone(),
+                rgb: vec![0; 3 * pixels],
+                values: self.values.then(|| vec![[0.0; 3]; pixels]),
+                verdicts: None,
+            },
+            doubtful: Vec::new(),
         });
         let columns = rectangle.columns.start as usize..rectangle.columns.end as usize;
         let pixel_bytes = if self.values { 16 } else { 4 };
@@ -49,10 +57,10 @@ impl Assembly {
             }
             if verdicts != 0 {
                 let pixels = line.chunks_exact(pixel_bytes).enumerate();
-                self.undecided.extend(
+                doubtful.extend(
                     pixels
                         .filter(|(_, p)| p[pixel_bytes - 1] != 0)
-                        .map(|(i, _)| place.start + i),
+                        .map(|(i, _)| (place.start + i) as u32),
                 );
             }
             if let Some(values) = &mut band.values {
@@ -70,33 +78,51 @@ impl Assembly {
         self.complete = rectangle.last;
     }
 
-    /// The band, if all its rectangles have come, with what the CPU had to decide.
-    pub(super) fn finished(
-        &mut self,
-        refine: &Refine<'_>,
-        times: &mut BandTimes,
-    ) -> Result<Option<Band>, PixelFault> {
+    /// The band, if all its rectangles have come.
+    pub(super) fn finished(&mut self) -> Option<Rendered> {
         if !std::mem::take(&mut self.complete) {
-            return Ok(None);
+            return None;
         }
-        let Some(mut band) = self.band.take() else {
-            return Ok(None);
+        let mut rendered = self.under_way.take()?;
+        // Rectangles side by side bring their rows one after the other.
+        rendered.doubtful.sort_unstable();
+        Some(rendered)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rectangles side by side, a band of two rows: every pixel at its place, and no doubtful one dropped.
+    #[test]
+    fn rectangles_side_by_side_are_one_band() {
+        let mut assembly = Assembly::new(5, false);
+        let mut rectangle = Rectangle {
+            band: 10..12,
+            columns: 0..3,
+            last: false,
         };
-        times.refined += self.undecided.len() as u64;
-        let (width, top) = (self.width, band.rows.end - 1);
-        let decided: Vec<(usize, _)> = std::mem::take(&mut self.undecided)
-            .into_par_iter()
-            .map(|place| {
-                refine((place % width) as u32, top - (place / width) as u32)
-                    .map(|done| (place, done))
-            })
-            .collect::<Result<_, _>>()?;
-        for (place, (value, bytes)) in decided {
-            band.rgb[3 * place..3 * place + 3].copy_from_slice(&bytes);
-            if let Some(values) = &mut band.values {
-                values[place] = value;
-            }
-        }
-        Ok(Some(band))
+        let pixel = |n: u8, verdict: u8| [n, n + 100, n + 200, verdict];
+        let left = [
+            pixel(0, 0),
+            pixel(1, 1),
+            pixel(2, 0),
+            pixel(5, 255),
+            pixel(6, 0),
+            pixel(7, 0),
+        ];
+        assembly.take(&rectangle, left.as_flattened());
+        assert!(assembly.finished().is_none());
+        rectangle.columns = 3..5;
+        rectangle.last = true;
+        let right = [pixel(3, 1), pixel(4, 0), pixel(8, 0), pixel(9, 2)];
+        assembly.take(&rectangle, right.as_flattened());
+        let rendered = assembly.finished().unwrap();
+        let rgb: Vec<u8> = (0..10).flat_map(|n| [n, n + 100, n + 200]).collect();
+        assert_eq!(rendered.band.rgb, rgb);
+        assert_eq!(rendered.band.rows, 10..12);
+        assert_eq!(rendered.doubtful, [1, 3, 5, 9]);
+        assert!(assembly.finished().is_none());
     }
 }

@@ -5,19 +5,19 @@ mod assembly;
 mod plan;
 mod slot;
 
-use std::io;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 
 use super::GpuError;
 use super::compose::WORKGROUP;
 use super::device::Gpu;
 use super::pipeline::Pipeline;
-use crate::frame::PixelFault;
 use crate::jitter::Jitter;
 use assembly::Assembly;
 use plan::Plan;
 use slot::Slot;
+
+pub use assembly::Rendered;
 
 /// Most pixels of one dispatch: 8 MiB of packed bytes, twice for two dispatches under way, twice for reading back.
 const MAX_PIXELS: u64 = 2 << 20;
@@ -29,38 +29,18 @@ const OFFSET_BYTES: u64 = 8;
 /// Where the time of the bands went, and how many there were.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BandTimes {
-    /// Number of bands handed on.
-    pub bands: u32,
     /// Number of dispatches.
     pub dispatches: u32,
-    /// Pixels that the GPU handed to the CPU.
-    pub refined: u64,
     /// Seconds in kernels: by the device's clock where it has one, else as waited for.
     pub kernel: f64,
     /// Seconds waiting for the device and copying, kernels apart.
     pub readback: f64,
-    /// Seconds in `emit`.
-    pub emit: f64,
+    /// Seconds that who takes the bands kept the GPU's side waiting.
+    pub held: f64,
 }
-
-/// Why the bands ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum BandError {
-    /// The GPU's fault.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// A pixel needs more rays than allowed.
-    #[error(transparent)]
-    Pixel(#[from] PixelFault),
-    /// `emit` said no.
-    #[error(transparent)]
-    Emit(#[from] io::Error),
-}
-
-/// Value and bytes of pixel (x, y): what the CPU says of pixels that the GPU left undecided.
-pub type Refine<'a> = dyn Fn(u32, u32) -> Result<([f32; 3], [u8; 3]), PixelFault> + Sync + 'a;
 
 /// The frame to render.
+#[derive(Debug)]
 pub struct Frame<'a> {
     /// Columns.
     pub width: u32,
@@ -70,17 +50,18 @@ pub struct Frame<'a> {
     pub tests: usize,
     /// How the samples are spread.
     pub jitter: &'a Jitter,
-    /// What decides pixels that the GPU does not.
-    pub refine: &'a Refine<'a>,
+    /// Rows of a band, if that was asked for.
+    pub band_rows: Option<u32>,
 }
 
-/// Renders the frame from the top row down.
+/// Renders the frame from the top row down, and hands each band on: while that is waited for, the next two dispatches are
+/// on the GPU already. Ends early where `hand_on` breaks off.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
-    emit: &mut crate::frame::Emit<'_>,
-) -> Result<BandTimes, BandError> {
+    hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
+) -> Result<BandTimes, GpuError> {
     let (width, rows) = (frame.width, frame.rows.clone());
     let largest = largest_dispatch(gpu, pipeline, width, &rows);
     let mut slots = [
@@ -88,35 +69,39 @@ pub fn run(
         Slot::new(gpu, pipeline, largest),
     ];
     gpu.check()?;
-    let mut plan = Plan::new(width, rows, largest, frame.tests);
+    let mut plan = Plan::new(width, rows, largest, frame.tests, frame.band_rows);
     let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
     let mut times = BandTimes::default();
     let mut next = 0;
     let mut open = 0;
     loop {
         let rectangle = plan.next();
+        let mut finished = None;
         if open == 2 || (rectangle.is_none() && open > 0) {
             // The older of the two slots: the other one's work goes on meanwhile.
             let oldest = if open == 2 { next } else { 1 - next };
-            let seconds = slots[oldest].collect(gpu, &mut assembly, &mut times)?;
-            plan.took(seconds.0, seconds.1);
+            let (pixels, seconds) = slots[oldest].collect(gpu, &mut assembly, &mut times)?;
+            plan.took(pixels, seconds);
             open -= 1;
-            if let Some(band) = assembly.finished(frame.refine, &mut times)? {
-                let start = Instant::now();
-                emit(&band)?;
-                times.emit += start.elapsed().as_secs_f64();
-                times.bands += 1;
-            }
+            finished = assembly.finished();
         }
-        match rectangle {
-            Some(rectangle) => {
-                slots[next].submit(gpu, pipeline, frame.jitter, rectangle);
-                next = 1 - next;
-                open += 1;
-                times.dispatches += 1;
+        let done = rectangle.is_none() && open == 0;
+        if let Some(rectangle) = rectangle {
+            slots[next].submit(gpu, pipeline, frame.jitter, rectangle);
+            next = 1 - next;
+            open += 1;
+            times.dispatches += 1;
+        }
+        // Only now, with the GPU busy: whoever takes the band may keep us waiting.
+        if let Some(band) = finished {
+            let start = Instant::now();
+            if hand_on(band).is_break() {
+                return Ok(times);
             }
-            None if open == 0 => return Ok(times),
-            None => {}
+            times.held += start.elapsed().as_secs_f64();
+        }
+        if done {
+            return Ok(times);
         }
     }
 }

@@ -49,18 +49,27 @@ pub(super) struct Plan {
     rows: Range<u32>,
     largest: u64,
     pixels: u64,
+    /// Rows of a band, if that was asked for.
+    band_rows: Option<u32>,
     /// The band under way and its next column.
     pub(super) band: Option<(Range<u32>, u32)>,
 }
 
 impl Plan {
-    pub(super) fn new(width: u32, rows: Range<u32>, largest: u64, tests: usize) -> Self {
+    pub(super) fn new(
+        width: u32,
+        rows: Range<u32>,
+        largest: u64,
+        tests: usize,
+        band_rows: Option<u32>,
+    ) -> Self {
         let pixels = (FIRST_TESTS / (tests as u64 + PIXEL_TESTS)).clamp(1, largest);
         Self {
             width,
             rows,
             largest,
             pixels,
+            band_rows,
             band: None,
         }
     }
@@ -84,10 +93,11 @@ impl Plan {
                 let fitting = (self.largest / u64::from(self.width))
                     .max(1)
                     .min(u64::from(u32::MAX)) as u32;
-                let wanted = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
-                let height = wanted
-                    .max(WORKGROUP)
-                    .min(fitting)
+                let timely = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
+                let height = self
+                    .band_rows
+                    .unwrap_or(timely.max(WORKGROUP))
+                    .clamp(1, fitting)
                     .min(self.rows.end - self.rows.start);
                 let band = self.rows.end - height..self.rows.end;
                 self.rows.end = band.start;
@@ -122,13 +132,33 @@ mod tests {
         tested: usize,
         seconds: impl Fn(u64) -> f64,
     ) {
-        let mut plan = Plan::new(width, rows.clone(), largest, tested);
+        for band_rows in [None, Some(1), Some(7), Some(1_000_000)] {
+            covers_in_bands(width, rows.clone(), largest, tested, &seconds, band_rows);
+        }
+    }
+
+    fn covers_in_bands(
+        width: u32,
+        rows: Range<u32>,
+        largest: u64,
+        tested: usize,
+        seconds: &dyn Fn(u64) -> f64,
+        band_rows: Option<u32>,
+    ) {
+        let mut plan = Plan::new(width, rows.clone(), largest, tested, band_rows);
         let mut top = rows.end;
         let mut column = 0;
         while let Some(r) = plan.next() {
             assert_eq!(r.columns.start, column);
             assert_eq!(r.band.end, top);
             assert!(r.pixels() <= largest && r.pixels() > 0, "{r:?}");
+            let fitting = (largest / u64::from(width)).max(1);
+            if let Some(band_rows) = band_rows {
+                let height = u64::from(band_rows)
+                    .min(fitting)
+                    .min(u64::from(top - rows.start));
+                assert_eq!(u64::from(r.band.end - r.band.start), height);
+            }
             if r.last {
                 assert_eq!(r.columns.end, width);
                 top = r.band.start;
@@ -155,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_slow_scene_gets_small_dispatches() {
-        let mut plan = Plan::new(1000, 0..1000, MAX_PIXELS, 3);
+        let mut plan = Plan::new(1000, 0..1000, MAX_PIXELS, 3, None);
         for _ in 0..10 {
             let Some(r) = plan.next() else { break };
             plan.took(r.pixels(), r.pixels() as f64 * 1e-4);

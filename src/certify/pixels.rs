@@ -1,0 +1,169 @@
+//! Pixels decided on the CPU, on all cores: those that the GPU is not sure of, or whole bands.
+
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use super::{Decided, Stage, Tally};
+use crate::cpu::pixel::Stages;
+use crate::cpu::trace::Limits;
+use crate::frame::{Band, PixelFault};
+use crate::jitter::Jitter;
+use crate::prepare::View;
+use crate::scene::Scene;
+
+/// Single pixels are handed to the cores in pieces of this many: small, because some take a thousand times as long as
+/// others, and those stand side by side.
+const PIECE: usize = 16;
+
+/// What it takes to trace a pixel of a scene on the CPU.
+pub struct Tracer<'a> {
+    scene: &'a Scene,
+    view: View,
+    limits: Limits,
+    jitter: &'a Jitter,
+    width: usize,
+    stages: OnceLock<Stages<'a>>,
+}
+
+/// What a band has besides its bytes.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// The values before quantising.
+    pub values: bool,
+    /// What decided each pixel.
+    pub verdicts: bool,
+}
+
+impl<'a> Tracer<'a> {
+    /// For pictures of a scene that are `width` pixels wide.
+    pub fn new(
+        scene: &'a Scene,
+        view: View,
+        limits: Limits,
+        jitter: &'a Jitter,
+        width: u32,
+    ) -> Self {
+        Self {
+            scene,
+            view,
+            limits,
+            jitter,
+            width: width as usize,
+            stages: OnceLock::new(),
+        }
+    }
+
+    /// Prepares the scene, if that was not done yet.
+    pub fn stages(&self) -> &Stages<'a> {
+        self.stages
+            .get_or_init(|| Stages::new(self.scene, self.view))
+    }
+
+    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`.
+    pub fn pixels(&self, top: u32, places: &[u32]) -> Result<(Vec<Decided>, Tally), PixelFault> {
+        let stages = self.stages();
+        let width = self.width as u32;
+        // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
+        let rows: Vec<&[u32]> = places.chunk_by(|a, b| a / width == b / width).collect();
+        let decided: Vec<(Vec<Decided>, Tally)> = rows
+            .into_par_iter()
+            .flat_map(|row| {
+                let y = top - row[0] / width;
+                let offsets = self.jitter.row(y).map(Arc::new);
+                row.par_chunks(PIECE)
+                    .map(move |piece| (piece, y, offsets.clone()))
+            })
+            .map(|(piece, y, offsets)| {
+                let offsets = offsets.as_deref().map(Vec::as_slice);
+                let mut tally = Tally::default();
+                let mut all = Vec::with_capacity(piece.len());
+                let mut before = Instant::now();
+                for place in piece {
+                    let x = place % width;
+                    let sampling = self.jitter.pixel(offsets, self.width, x as usize);
+                    let decided = stages.trace(&self.limits, sampling, x, y)?;
+                    let after = Instant::now();
+                    tally.decided(decided.stage, [x, y], after - before);
+                    before = after;
+                    all.push(decided);
+                }
+                Ok((all, tally))
+            })
+            .collect::<Result<_, _>>()?;
+        let mut tally = Tally::default();
+        let mut all = Vec::with_capacity(places.len());
+        for (piece, counted) in decided {
+            all.extend(piece);
+            tally = tally.merge(counted);
+        }
+        Ok((all, tally))
+    }
+
+    /// Traces a whole band.
+    pub fn band(&self, rows: Range<u32>, wanted: Wanted) -> Result<(Band, Tally), PixelFault> {
+        let stages = self.stages();
+        let (width, top) = (self.width, rows.end - 1);
+        let pixels = width * rows.len();
+        let mut rgb = vec![0; 3 * pixels];
+        let mut values = vec![[0.0; 3]; if wanted.values { pixels } else { 0 }];
+        let mut verdicts = vec![Stage::Gpu; if wanted.verdicts { pixels } else { 0 }];
+        // Pieces of rows, small enough to share out, large enough not to cost.
+        let piece = (pixels / (8 * rayon::current_num_threads()))
+            .clamp(64, 8192)
+            .min(width);
+        let value_lines = lines(&mut values, width, rows.len());
+        let verdict_lines = lines(&mut verdicts, width, rows.len());
+        let tally = rgb
+            .par_chunks_mut(3 * width)
+            .zip(value_lines)
+            .zip(verdict_lines)
+            .enumerate()
+            .map(|(line, ((bytes, values), verdicts))| {
+                let y = top - line as u32;
+                let offsets = self.jitter.row(y);
+                let count = width.div_ceil(piece);
+                bytes
+                    .par_chunks_mut(3 * piece)
+                    .zip(lines(values, piece, count))
+                    .zip(lines(verdicts, piece, count))
+                    .enumerate()
+                    .map(|(k, ((bytes, values), verdicts))| {
+                        let mut tally = Tally::default();
+                        for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                            let x = k * piece + i;
+                            let sampling = self.jitter.pixel(offsets.as_deref(), width, x);
+                            let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
+                            tally.decided(decided.stage, [x as u32, y], Duration::ZERO);
+                            pixel.copy_from_slice(&decided.bytes);
+                            if let Some(value) = values.get_mut(i) {
+                                *value = decided.value;
+                            }
+                            if let Some(verdict) = verdicts.get_mut(i) {
+                                *verdict = decided.stage;
+                            }
+                        }
+                        Ok(tally)
+                    })
+                    .try_reduce(Tally::default, |a, b| Ok(a.merge(b)))
+            })
+            .try_reduce(Tally::default, |a, b| Ok(a.merge(b)))?;
+        let band = Band {
+            rows,
+            rgb,
+            values: wanted.values.then_some(values),
+            verdicts: wanted.verdicts.then_some(verdicts),
+        };
+        Ok((band, tally))
+    }
+}
+
+/// Pieces of `size`, or as many empty ones.
+fn lines<T>(all: &mut [T], size: usize, count: usize) -> Vec<&mut [T]> {
+    if all.is_empty() {
+        return (0..count).map(|_| Default::default()).collect();
+    }
+    all.chunks_mut(size).collect()
+}
