@@ -2,7 +2,7 @@
 //!
 //! In the order of the flow: [`pack`] rounds the prepared scene to flat f32 records, [`features`] says which of them there
 //! are, [`compose`] writes the WGSL for exactly those, [`device`] finds an adapter and opens it, [`pipeline`] compiles and
-//! binds, [`bands`] runs the frame in rectangles bounded in memory and time. [`describe`] prints each stage.
+//! binds, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`] tries out a device before it is trusted. [`describe`] prints each stage.
 
 pub mod bands;
 pub mod compose;
@@ -12,6 +12,7 @@ pub mod features;
 pub mod literal;
 pub mod pack;
 pub mod pipeline;
+pub mod selftest;
 
 /// What can go wrong on the way to or on the GPU.
 #[derive(Debug, thiserror::Error)]

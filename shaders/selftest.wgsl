@@ -1,0 +1,93 @@
+// What the certified path takes for granted of a device, tried out: src/gpu/selftest.rs judges the results.
+
+@group(0) @binding(0) var<storage, read> operands: array<vec2u>;
+@group(0) @binding(1) var<storage, read_write> results: array<u32>;
+// Zero, which no compiler can know.
+@group(0) @binding(2) var<storage, read> unknown: array<u32>;
+
+var<private> zero: u32;
+
+// The barrier: no identity of real arithmetic leads through it.
+fn keep(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) ^ zero);
+}
+
+// x + y = sum + tail, exactly (Knuth).
+fn two_sum(x: f32, y: f32) -> vec2f {
+    let sum = keep(x + y);
+    let b = keep(sum - x);
+    let a = keep(sum - b);
+    return vec2f(sum, keep(x - a) + keep(y - b));
+}
+
+// x = high + low, each of 12 bits (Veltkamp).
+fn split(x: f32) -> vec2f {
+    let c = keep(4097.0 * x);
+    let high = keep(c - keep(c - x));
+    return vec2f(high, keep(x - high));
+}
+
+// x · y = product + tail, exactly (Dekker).
+fn two_prod(x: f32, y: f32) -> vec2f {
+    let product = keep(x * y);
+    let a = split(x);
+    let b = split(y);
+    let rest = keep(keep(keep(a.x * b.x) - product) + keep(a.x * b.y));
+    return vec2f(product, keep(rest + keep(a.y * b.x)) + keep(a.y * b.y));
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    zero = unknown[0];
+    let a = operands[id.x].x;
+    let b = operands[id.x].y;
+    let x = bitcast<f32>(a);
+    let y = bitcast<f32>(b);
+    let sum = two_sum(x, y);
+    let product = two_prod(x, y);
+    // Not folded before the driver sees it, but perhaps by the driver.
+    var folded = LITERAL_0;
+    folded *= LITERAL_1;
+    var all = array<u32, RESULTS>(
+        bitcast<u32>(x + y),
+        bitcast<u32>(x - y),
+        bitcast<u32>(x * y),
+        bitcast<u32>(x / y),
+        bitcast<u32>(sqrt(abs(x))),
+        bitcast<u32>(inverseSqrt(abs(x))),
+        bitcast<u32>(floor(x)),
+        bitcast<u32>(round(x)),
+        bitcast<u32>(i32(x)),
+        u32(abs(x)),
+        bitcast<u32>(f32(bitcast<i32>(a))),
+        bitcast<u32>(f32(a)),
+        bitcast<u32>(min(x, y)),
+        bitcast<u32>(max(x, y)),
+        bitcast<u32>(abs(x)),
+        bitcast<u32>(select(x, y, x > y)),
+        u32(x > y) | u32(x >= y) << 1u | u32(abs(x) > abs(y)) << 2u | u32(x == y) << 3u,
+        a + b,
+        a - b,
+        a * b,
+        (a << (b & 31u)) ^ (a >> (b & 31u)),
+        bitcast<u32>(bitcast<i32>(a) * bitcast<i32>(b)),
+        bitcast<u32>(bitcast<i32>(a) >> (b & 31u)),
+        bitcast<u32>(keep(x)),
+        bitcast<u32>(sum.x),
+        bitcast<u32>(sum.y),
+        bitcast<u32>(product.x),
+        bitcast<u32>(product.y),
+        bitcast<u32>(LITERAL_0),
+        bitcast<u32>(LITERAL_1),
+        bitcast<u32>(LITERAL_2),
+        bitcast<u32>(LITERAL_3),
+        bitcast<u32>(folded),
+        bitcast<u32>(x * LITERAL_0),
+        bitcast<u32>(x + LITERAL_1),
+        bitcast<u32>(x / LITERAL_2),
+        u32(abs(x) > LITERAL_3),
+    );
+    for (var i = 0u; i < RESULTS; i += 1u) {
+        results[id.x * RESULTS + i] = all[i];
+    }
+}

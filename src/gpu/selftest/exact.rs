@@ -1,0 +1,123 @@
+//! What results have to be, by f64, in which sums, products and comparisons of f32 operands are exact enough to tell.
+//!
+//! Each answers None outside its domain, else whether the result may stand. Subnormal operands may be taken for 0, and
+//! subnormal results too.
+
+/// 2³¹.
+pub(super) const TWO_31: f32 = 2_147_483_648.0;
+
+/// Results above this are not asked for: the certified path has none.
+const HUGE: f64 = 1e38;
+
+/// What a device may take an operand for.
+fn flushed(v: f32) -> impl Iterator<Item = f32> + Clone {
+    [Some(v), v.is_subnormal().then_some(0.0)]
+        .into_iter()
+        .flatten()
+}
+
+/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32; where |low| is at most
+/// half a last place of `high`. A subnormal sum may be 0.
+pub(super) fn nearest_two(high: f64, low: f64, result: f32) -> bool {
+    if result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE) {
+        return true;
+    }
+    let (below, above) = (f64::from(result.next_down()), f64::from(result.next_up()));
+    // `high` is `high + low` rounded, and rounding keeps the order.
+    (below < high || (below == high && low > 0.0)) && (high < above || (high == above && low < 0.0))
+}
+
+/// x + y.
+pub(super) fn sum(x: f32, y: f32, result: f32) -> Option<bool> {
+    if (f64::from(x) + f64::from(y)).abs() > HUGE {
+        return None;
+    }
+    let mut all = flushed(x).flat_map(|x| flushed(y).map(move |y| [x, y]));
+    Some(all.any(|[x, y]| {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let high = x + y;
+        let b = high - x;
+        nearest_two(high, (x - (high - b)) + (y - b), result)
+    }))
+}
+
+/// x · y, which f64 holds exactly.
+pub(super) fn product(x: f32, y: f32, result: f32) -> Option<bool> {
+    if (f64::from(x) * f64::from(y)).abs() > HUGE {
+        return None;
+    }
+    let mut all = flushed(x).flat_map(|x| flushed(y).map(move |y| [x, y]));
+    Some(all.any(|[x, y]| nearest_two(f64::from(x) * f64::from(y), 0.0, result)))
+}
+
+/// x / y, to 2.5 units of the last place, for divisors from 2⁻¹²⁶ to 2¹²⁶.
+pub(super) fn quotient(x: f32, y: f32, result: f32) -> Option<bool> {
+    let size = f64::from(y.abs());
+    let domain = f64::from(f32::MIN_POSITIVE)..=126f64.exp2();
+    let exact = f64::from(x) / f64::from(y);
+    if !domain.contains(&size) || exact.abs() > HUGE {
+        return None;
+    }
+    Some(flushed(x).any(|x| within(f64::from(x) / f64::from(y), result, 2.5)))
+}
+
+/// 1/√|x|, to 2 units of the last place.
+pub(super) fn inverse_root(x: f32, result: f32) -> Option<bool> {
+    x.is_normal()
+        .then(|| within(1.0 / f64::from(x.abs()).sqrt(), result, 2.0))
+}
+
+/// √|x|: 1 over an inverse root of 2 units, divided with 2.5 units; all in all 4.6 u relative, u = 2⁻²³.
+pub(super) fn root(x: f32, result: f32) -> Option<bool> {
+    let exact = f64::from(x.abs()).sqrt();
+    x.is_normal()
+        .then(|| (f64::from(result) - exact).abs() <= 4.6 * f64::from(f32::EPSILON) * exact)
+}
+
+/// Whether `result` is within so many units of the last place of `exact`; 0 may stand for what is subnormal.
+fn within(exact: f64, result: f32, units: f64) -> bool {
+    let smallest = f64::from(f32::MIN_POSITIVE);
+    if exact.abs() < smallest * (1.0 + 1e-6) && (result == 0.0 || result.is_subnormal()) {
+        return true;
+    }
+    // Below the power of two, places are half as large; the exact value's own binade counts.
+    let last_place = (exact.abs().max(smallest).log2().floor() - 23.0).exp2();
+    (f64::from(result) - exact).abs() <= units * last_place
+}
+
+/// A whole number next to x, as `function` finds it.
+pub(super) fn whole(x: f32, function: fn(f32) -> f32, result: f32) -> Option<bool> {
+    (!x.is_subnormal() && x.abs() < TWO_31).then(|| result == function(x))
+}
+
+/// x + y = sum + tail, where no part of them is subnormal or overflows.
+pub(super) fn two_sum(x: f32, y: f32, sum: f32, tail: f32) -> Option<bool> {
+    let domain = -60f64..=100.0;
+    let inside = |v: f32| v == 0.0 || domain.contains(&f64::from(v.abs()).log2());
+    if !inside(x) || !inside(y) {
+        return None;
+    }
+    let (x, y) = (f64::from(x), f64::from(y));
+    // x + y in two f64, and what the device says in two f64: normalised both, so equal as numbers if equal in parts.
+    let exact = normal(x, y);
+    Some(sum.is_finite() && exact == normal(f64::from(sum), f64::from(tail)))
+}
+
+/// x · y = product + tail, likewise.
+pub(super) fn two_prod(x: f32, y: f32, product: f32, tail: f32) -> Option<bool> {
+    let domain = -30f64..=60.0;
+    let inside = |v: f32| v == 0.0 || domain.contains(&f64::from(v.abs()).log2());
+    if !inside(x) || !inside(y) {
+        return None;
+    }
+    // The product has 48 bits; two f32 that make it up are added without rounding.
+    let sum = normal(f64::from(product), f64::from(tail));
+    Some(sum == (f64::from(x) * f64::from(y), 0.0))
+}
+
+/// a + b as an f64 and what is left (Knuth).
+fn normal(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}

@@ -1,0 +1,213 @@
+//! The self-test tested: right results pass, one wrong word does not.
+
+use std::cell::Cell;
+
+use super::*;
+
+thread_local! {
+    /// A word of the results that this thread's next self-tests get wrong.
+    static SPOILED: Cell<Option<usize>> = const { Cell::new(None) };
+}
+
+/// Makes the self-tests that follow on this thread get a word wrong, or none.
+pub(crate) fn spoil_next(word: Option<usize>) {
+    SPOILED.set(word);
+}
+
+/// What [`run`] does to the results under test.
+pub(super) fn spoil(results: &mut [u32]) {
+    if let Some(word) = SPOILED.get() {
+        results[word] ^= 1 << 20;
+    }
+}
+
+/// What a device that rounds to nearest would write; `f32` operations of the host are such.
+fn right(pairs: &[[u32; 2]]) -> Vec<u32> {
+    pairs
+        .iter()
+        .flat_map(|&[a, b]| {
+            let (x, y) = (f32::from_bits(a), f32::from_bits(b));
+            let sum = x + y;
+            let back = sum - x;
+            let tail = (x - (sum - back)) + (y - back);
+            let product = x * y;
+            let rest = (f64::from(x) * f64::from(y) - f64::from(product)) as f32;
+            let bits = f32::to_bits;
+            [
+                bits(x + y),
+                bits(x - y),
+                bits(x * y),
+                bits(x / y),
+                bits(x.abs().sqrt()),
+                bits((1.0 / f64::from(x.abs()).sqrt()) as f32),
+                bits(x.floor()),
+                bits(x.round_ties_even()),
+                x as i32 as u32,
+                x.abs() as u32,
+                bits(a as i32 as f32),
+                bits(a as f32),
+                bits(x.min(y)),
+                bits(x.max(y)),
+                bits(x.abs()),
+                bits(if x > y { y } else { x }),
+                u32::from(x > y)
+                    | u32::from(x >= y) << 1
+                    | u32::from(x.abs() > y.abs()) << 2
+                    | u32::from(x == y) << 3,
+                a.wrapping_add(b),
+                a.wrapping_sub(b),
+                a.wrapping_mul(b),
+                (a << (b & 31)) ^ (a >> (b & 31)),
+                (a as i32).wrapping_mul(b as i32) as u32,
+                (a as i32 >> (b & 31)) as u32,
+                a,
+                bits(sum),
+                bits(tail),
+                bits(product),
+                bits(rest),
+                bits(LITERALS[0]),
+                bits(LITERALS[1]),
+                bits(LITERALS[2]),
+                bits(LITERALS[3]),
+                bits(LITERALS[0] * LITERALS[1]),
+                bits(x * LITERALS[0]),
+                bits(x + LITERALS[1]),
+                bits(x / LITERALS[2]),
+                u32::from(x.abs() > LITERALS[3]),
+            ]
+        })
+        .collect()
+}
+
+#[test]
+fn right_results_pass_and_every_check_has_cases() {
+    let pairs = operands();
+    assert_eq!(pairs.len() % WORKGROUP, 0);
+    let outcomes = judge(&pairs, &right(&pairs));
+    assert_eq!(failures(&outcomes), None);
+    for outcome in &outcomes {
+        assert!(outcome.cases > 1000, "{outcome:?}");
+    }
+    // Every word is looked at.
+    let words: Vec<usize> = CHECKS.iter().flat_map(|c| c.words.clone()).collect();
+    assert_eq!(words, (0..RESULTS).collect::<Vec<_>>());
+}
+
+/// One word of one pair wrong: the check that looks at it fails, and no other.
+#[test]
+fn one_wrong_word_is_noticed() {
+    let pairs = operands();
+    let results = right(&pairs);
+    for check in CHECKS {
+        for word in check.words.clone() {
+            // Somewhere in the operands where the check looks.
+            let row = (1..pairs.len())
+                .rev()
+                .find(|row| {
+                    let words = &results[row * RESULTS..][check.words.clone()];
+                    let pair = Pair {
+                        a: pairs[*row][0],
+                        b: pairs[*row][1],
+                    };
+                    (check.judge)(pair, words) == Some(true) && words[0] != 0
+                })
+                .unwrap();
+            let mut wrong = results.clone();
+            wrong[row * RESULTS + word] ^= 1 << 20;
+            let outcomes = judge(&pairs, &wrong);
+            for outcome in outcomes {
+                assert_eq!(
+                    outcome.failure.is_some(),
+                    outcome.check == check.name,
+                    "{outcome:?} for word {word} of row {row}"
+                );
+            }
+        }
+    }
+}
+
+/// The last place counts where exactness is asked for, and three of them where a quotient may be off by two and a half.
+#[test]
+fn a_last_place_is_noticed() {
+    let at = |x: f32, y: f32| Pair {
+        a: x.to_bits(),
+        b: y.to_bits(),
+    };
+    let judged = |name: &str, pair, words: &[u32]| {
+        let check = CHECKS.iter().find(|check| check.name == name).unwrap();
+        (check.judge)(pair, words)
+    };
+    let third = 1.0_f32 / 3.0;
+    for (places, passes) in [(0, true), (2, true), (3, false)] {
+        let word = third.to_bits() + places;
+        assert_eq!(
+            judged("x / y", at(1.0, 3.0), &[word]),
+            Some(passes),
+            "{places}"
+        );
+    }
+    // 1 + 2⁻²⁴ lies between two f32, both of which may stand; 1 + 1 is one.
+    let half = f32::EPSILON / 2.0;
+    for (places, passes) in [(0, true), (1, true), (2, false)] {
+        let word = 1_f32.to_bits() + places;
+        assert_eq!(judged("x + y", at(1.0, half), &[word]), Some(passes));
+    }
+    assert_eq!(
+        judged("x + y", at(1.0, 1.0), &[2_f32.to_bits()]),
+        Some(true)
+    );
+    assert_eq!(
+        judged("x + y", at(1.0, 1.0), &[2_f32.to_bits() + 1]),
+        Some(false)
+    );
+    // Cancelled tails, as compilers leave them without a barrier.
+    let words = [1_f32.to_bits(), 0];
+    assert_eq!(
+        judged("two_sum behind the barrier", at(1.0, half), &words),
+        Some(false)
+    );
+    let x = 1.0 + f32::EPSILON;
+    let words = [(x * x).to_bits(), 0];
+    assert_eq!(
+        judged("two_prod behind the barrier", at(x, x), &words),
+        Some(false)
+    );
+    // Flushing is allowed, to either side.
+    let small = f32::MIN_POSITIVE;
+    for word in [0, 1 << 22] {
+        assert_eq!(judged("x * y", at(small, 0.5), &[word]), Some(true));
+    }
+    assert_eq!(judged("x * y", at(small, 2.0), &[0]), Some(false));
+}
+
+#[test]
+fn results_that_are_missing_are_noticed() {
+    let pairs = operands();
+    let results = right(&pairs);
+    let outcomes = judge(&pairs, &results[..results.len() - RESULTS]);
+    assert!(failures(&outcomes).unwrap().contains("missing"));
+}
+
+/// Needs an adapter, and fails without one.
+#[test]
+fn the_adapter_here_passes() {
+    let gpu = crate::gpu::device::open(None).unwrap();
+    for _ in 0..4 {
+        let start = std::time::Instant::now();
+        run(&gpu).unwrap();
+        println!("{:?}", start.elapsed());
+    }
+    let start = std::time::Instant::now();
+    let outcomes = run(&gpu).unwrap();
+    println!("{}: {:?}", gpu.name, start.elapsed());
+    let start = std::time::Instant::now();
+    judge(&operands(), &right(&operands()));
+    println!("judging: {:?}", start.elapsed());
+    for outcome in &outcomes {
+        println!(
+            "{:30} {:5} {:?}",
+            outcome.check, outcome.cases, outcome.failure
+        );
+    }
+    assert_eq!(failures(&outcomes), None);
+}
