@@ -1,7 +1,7 @@
 // What the certified path takes for granted of a device, tried out: src/gpu/selftest.rs judges the results.
 
 @group(0) @binding(0) var<storage, read> operands: array<vec2u>;
-@group(0) @binding(1) var<storage, read_write> results: array<u32>;
+@group(0) @binding(1) var<storage, read_write> results: array<vec4u>;
 // Zero, which no compiler can know.
 @group(0) @binding(2) var<storage, read> unknown: array<u32>;
 
@@ -48,46 +48,65 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Not folded before the driver sees it, but perhaps by the driver.
     var folded = LITERAL_0;
     folded *= LITERAL_1;
-    var all = array<u32, RESULTS>(
+    let at = id.x * RESULTS / 4u;
+    results[at + 0u] = vec4u(
         bitcast<u32>(x + y),
         bitcast<u32>(x - y),
         bitcast<u32>(x * y),
         bitcast<u32>(x / y),
+    );
+    results[at + 1u] = vec4u(
         bitcast<u32>(sqrt(abs(x))),
         bitcast<u32>(inverseSqrt(abs(x))),
         bitcast<u32>(floor(x)),
         bitcast<u32>(round(x)),
+    );
+    results[at + 2u] = vec4u(
         bitcast<u32>(i32(x)),
         u32(abs(x)),
         bitcast<u32>(f32(bitcast<i32>(a))),
         bitcast<u32>(f32(a)),
+    );
+    results[at + 3u] = vec4u(
         bitcast<u32>(min(x, y)),
         bitcast<u32>(max(x, y)),
         bitcast<u32>(abs(x)),
         bitcast<u32>(select(x, y, x > y)),
+    );
+    results[at + 4u] = vec4u(
         u32(x > y) | u32(x >= y) << 1u | u32(abs(x) > abs(y)) << 2u | u32(x == y) << 3u,
         a + b,
         a - b,
         a * b,
+    );
+    results[at + 5u] = vec4u(
         (a << (b & 31u)) ^ (a >> (b & 31u)),
         bitcast<u32>(bitcast<i32>(a) * bitcast<i32>(b)),
         bitcast<u32>(bitcast<i32>(a) >> (b & 31u)),
         bitcast<u32>(keep(x)),
+    );
+    results[at + 6u] = vec4u(
         bitcast<u32>(sum.x),
         bitcast<u32>(sum.y),
         bitcast<u32>(product.x),
         bitcast<u32>(product.y),
+    );
+    results[at + 7u] = vec4u(
         bitcast<u32>(LITERAL_0),
         bitcast<u32>(LITERAL_1),
         bitcast<u32>(LITERAL_2),
         bitcast<u32>(LITERAL_3),
+    );
+    results[at + 8u] = vec4u(
         bitcast<u32>(folded),
         bitcast<u32>(x * LITERAL_0),
         bitcast<u32>(x + LITERAL_1),
         bitcast<u32>(x / LITERAL_2),
-        u32(abs(x) > LITERAL_3),
     );
-    for (var i = 0u; i < RESULTS; i += 1u) {
-        results[id.x * RESULTS + i] = all[i];
-    }
+    results[at + 9u] = vec4u(
+        u32(abs(x) > LITERAL_3),
+        0u,
+        0u,
+        0u,
+    );
 }

@@ -12,6 +12,8 @@ use plumb::cpu::trace::Limits;
 use plumb::render::{Backend, Precision, Settings, Spread};
 use plumb::scene::Scene;
 
+use super::cache;
+
 /// The most pixels a side, as `pixeldim` has it.
 const MOST_PIXELS: u32 = 1_000_000;
 /// More samples than this show nothing more, and take hours.
@@ -252,6 +254,7 @@ impl RenderOptions {
             values,
             verdicts: self.verdicts.is_some(),
             band_rows: self.band_rows,
+            cache: cache::folder(),
             ..self.picture.settings()
         })
     }

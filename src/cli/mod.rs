@@ -4,6 +4,7 @@
 //! library and says what came out. Data goes to stdout, talk to stderr (`say`).
 
 mod args;
+mod cache;
 mod check;
 mod compare;
 mod completions;

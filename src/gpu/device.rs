@@ -17,6 +17,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// What the adapter is called, with its driver.
     pub name: String,
+    /// All that tells it from other adapters and other drivers: name, driver, driver's version, interface, numbers.
+    pub identity: String,
     /// Whether kernels can be timed on the device.
     pub timestamps: bool,
     /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
@@ -108,6 +110,7 @@ pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
         device,
         queue,
         name,
+        identity: identity(&info),
         timestamps,
         lanes,
         seconds: [instance_seconds, device_seconds],
@@ -223,6 +226,21 @@ fn driver(info: &wgpu::AdapterInfo) -> String {
     format!("{} {}", info.driver, info.driver_info)
         .trim()
         .to_owned()
+}
+
+/// All that tells an adapter from others, in a line.
+fn identity(info: &wgpu::AdapterInfo) -> String {
+    let wgpu::AdapterInfo {
+        name,
+        vendor,
+        device,
+        driver,
+        driver_info,
+        backend,
+        ..
+    } = info;
+    format!("{name} | {driver} | {driver_info} | {backend} | {vendor:04x}:{device:04x}")
+        .replace(['\n', '\r'], " ")
 }
 
 /// Why plumb cannot use the adapter, if so.

@@ -58,6 +58,16 @@ pub enum GpuError {
         /// Objects that it may.
         allowed: usize,
     },
+    /// The device computes otherwise than the certified path takes for granted.
+    #[error(
+        "{adapter} does not compute as WGSL asks, so nothing it says can be certified ({failures}); --precision fast takes it as it comes"
+    )]
+    Untrusted {
+        /// Name of the adapter.
+        adapter: String,
+        /// What it got wrong.
+        failures: String,
+    },
     /// The device ran out of memory.
     #[error("{adapter} is out of memory: {reason}")]
     OutOfMemory {

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use super::finish::{Digest, Finish, Stop, Wrong};
 use super::{Backend, Emit, Error, Report, Settings};
-use crate::certify::Tally;
 use crate::certify::pixels::{Tracer, Wanted};
+use crate::certify::{Tally, trust};
 use crate::frame::Band;
 use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;
@@ -78,7 +78,10 @@ impl Job<'_> {
         match ended {
             Ok(()) => Ok(()),
             Err(Stop::Error(error)) => Err(error),
-            Err(Stop::Wrong(wrong)) => self.again(&wrong, &digest, emit, report),
+            Err(Stop::Wrong(wrong)) => {
+                trust::revoke(gpu, self.settings.cache.as_deref());
+                self.again(&wrong, &digest, emit, report)
+            }
         }
     }
 

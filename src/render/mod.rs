@@ -4,6 +4,8 @@
 
 mod finish;
 mod job;
+#[cfg(test)]
+mod tests;
 
 use std::io;
 use std::time::Instant;
@@ -11,7 +13,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::certify::pixels::Tracer;
-use crate::certify::{Stage, StageSeconds, Tally};
+use crate::certify::{Stage, StageSeconds, Tally, trust};
 use crate::gpu::device::Gpu;
 use crate::gpu::{self, GpuError};
 use crate::prepare::View;
@@ -97,6 +99,8 @@ pub struct Seconds {
     pub instance: f64,
     /// Opening the device.
     pub device: f64,
+    /// Finding out whether the device can be trusted: the self-test, or looking up that it was passed.
+    pub selftest: f64,
     /// Composing and compiling the shader.
     pub compile: f64,
     /// Packing and uploading the scene.
@@ -264,8 +268,28 @@ fn open_gpu(settings: &Settings, report: &mut Report) -> Result<Option<Gpu>, Err
         );
         return Ok(None);
     }
-    match gpu::device::open(settings.adapter.as_deref()) {
+    let opened = gpu::device::open(settings.adapter.as_deref()).and_then(|gpu| {
+        let start = Instant::now();
+        let doubts = if settings.precision == Precision::Certified {
+            trust::doubts(&gpu, settings.cache.as_deref())
+        } else {
+            None
+        };
+        report.seconds.selftest = start.elapsed().as_secs_f64();
+        match doubts {
+            None => Ok(gpu),
+            Some(failures) => Err(GpuError::Untrusted {
+                adapter: gpu.name,
+                failures,
+            }),
+        }
+    });
+    match opened {
         Ok(gpu) => Ok(Some(gpu)),
+        Err(error @ GpuError::Untrusted { .. }) if settings.backend == Backend::Auto => {
+            report.fallback = Some(format!("{error}; the CPU renders"));
+            Ok(None)
+        }
         // Without any GPU the CPU gives the same picture; a GPU that was named has to be there.
         Err(error @ (GpuError::NoAdapter | GpuError::Device { .. }))
             if settings.backend == Backend::Auto =>

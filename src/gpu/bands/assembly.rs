@@ -34,6 +34,8 @@ impl Assembly {
     /// Copies a rectangle's pixels to their place. Each comes with its verdict in its highest byte, 0 if it is sure: the
     /// bytes below it have to be taken apart anyway.
     pub(super) fn take(&mut self, rectangle: &Rectangle, bytes: &[u8]) {
+        #[cfg(test)]
+        let bytes = &tests::tampered(rectangle, bytes, self.values);
         let rows = (rectangle.band.end - rectangle.band.start) as usize;
         let pixels = rows * self.width;
         let Rendered { band, doubtful } = self.under_way.get_or_insert_with(|| Rendered {
@@ -91,8 +93,35 @@ impl Assembly {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
+    use std::cell::RefCell;
+
     use super::*;
+
+    thread_local! {
+        /// Pixels (column, row from the bottom) that the GPU gets wrong, of what is rendered on this thread next.
+        static TAMPERED: RefCell<Vec<[u32; 2]>> = const { RefCell::new(Vec::new()) };
+    }
+
+    /// Makes the GPU get the red of these pixels wrong by one, and be sure of it, in what this thread renders next.
+    pub(crate) fn tamper_with(pixels: &[[u32; 2]]) {
+        TAMPERED.set(pixels.to_vec());
+    }
+
+    /// What [`Assembly::take`] gets under test.
+    pub(super) fn tampered(rectangle: &Rectangle, bytes: &[u8], values: bool) -> Vec<u8> {
+        let mut bytes = bytes.to_vec();
+        let columns = rectangle.columns.end - rectangle.columns.start;
+        for [x, y] in TAMPERED.with_borrow(Vec::clone) {
+            if !values && rectangle.band.contains(&y) && rectangle.columns.contains(&x) {
+                let row = rectangle.band.end - 1 - y;
+                let at = 4 * (row * columns + x - rectangle.columns.start) as usize;
+                bytes[at] ^= 1;
+                bytes[at + 3] = 0;
+            }
+        }
+        bytes
+    }
 
     /// Two rectangles side by side, a band of two rows: every pixel at its place, and no doubtful one dropped.
     #[test]

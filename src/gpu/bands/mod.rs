@@ -1,7 +1,7 @@
 //! The frame, in rectangles bounded in memory and in time: while one is on the GPU, the one before is read back and
 //! handed on. No dispatch should take longer than about half a second: a real GPU's watchdog resets longer ones.
 
-mod assembly;
+pub(crate) mod assembly;
 mod plan;
 mod slot;
 

@@ -27,8 +27,8 @@ const LITERALS: [f32; 4] = [
     f32::from_bits(0x0080_0001),
 ];
 
-/// Words that the shader writes for each pair of operands.
-const RESULTS: usize = 37;
+/// Words that the shader writes for each pair of operands, in fours; the last three are nothing.
+const RESULTS: usize = 40;
 
 /// Invocations of a workgroup, as the shader has it; the number of pairs is a multiple.
 const WORKGROUP: usize = 64;

@@ -74,6 +74,9 @@ fn right(pairs: &[[u32; 2]]) -> Vec<u32> {
                 bits(x + LITERALS[1]),
                 bits(x / LITERALS[2]),
                 u32::from(x.abs() > LITERALS[3]),
+                0,
+                0,
+                0,
             ]
         })
         .collect()
@@ -90,7 +93,7 @@ fn right_results_pass_and_every_check_has_cases() {
     }
     // Every word is looked at.
     let words: Vec<usize> = CHECKS.iter().flat_map(|c| c.words.clone()).collect();
-    assert_eq!(words, (0..RESULTS).collect::<Vec<_>>());
+    assert_eq!(words, (0..RESULTS - 3).collect::<Vec<_>>());
 }
 
 /// One word of one pair wrong: the check that looks at it fails, and no other.
@@ -192,11 +195,6 @@ fn results_that_are_missing_are_noticed() {
 #[test]
 fn the_adapter_here_passes() {
     let gpu = crate::gpu::device::open(None).unwrap();
-    for _ in 0..4 {
-        let start = std::time::Instant::now();
-        run(&gpu).unwrap();
-        println!("{:?}", start.elapsed());
-    }
     let start = std::time::Instant::now();
     let outcomes = run(&gpu).unwrap();
     println!("{}: {:?}", gpu.name, start.elapsed());

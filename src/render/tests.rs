@@ -1,0 +1,137 @@
+//! Faults that certified rendering has to notice: a device that fails the self-test, bytes that it is sure of and gets
+//! wrong. They need an adapter, and fail without one.
+
+use super::*;
+use crate::certify::spot::spots;
+use crate::certify::trust::tests::forget_all;
+use crate::gpu::bands::assembly::tests::tamper_with;
+use crate::gpu::selftest::tests::spoil_next;
+use crate::scene::load_from;
+
+const WIDTH: u32 = 64;
+const HEIGHT: u32 = 48;
+
+/// A wall whose bytes are far from any border but where it changes.
+fn scene() -> Scene {
+    let text = "camera c { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 }
+         material red { ambient 6.037 3.001 1.007 }
+         plane wall { material red normal 0 0 1 point 0 0 -3.017 }
+         sphere ball { material red center 5.003 3.001 -1.013 radius 1.007 }";
+    load_from("scene", text.as_bytes(), std::path::Path::new(".")).unwrap()
+}
+
+fn settings(backend: Backend) -> Settings {
+    Settings {
+        backend,
+        band_rows: Some(8),
+        ..Settings::default()
+    }
+}
+
+fn rendered(settings: &Settings) -> (Result<Report, Error>, Vec<Band>) {
+    let mut bands = Vec::new();
+    let report = render(&scene(), settings, &mut |band| {
+        bands.push(band.clone());
+        Ok(())
+    });
+    (report, bands)
+}
+
+fn rgb(bands: &[Band]) -> Vec<u8> {
+    bands.iter().flat_map(|band| band.rgb.clone()).collect()
+}
+
+/// Column and row of a pixel that is checked in the band with these rows.
+fn checked(rows: std::ops::Range<u32>) -> [u32; 2] {
+    let place = spots(WIDTH, &rows, &[])[0];
+    [place % WIDTH, rows.end - 1 - place / WIDTH]
+}
+
+#[test]
+fn nothing_is_wrong_by_itself() {
+    let (report, bands) = rendered(&settings(Backend::Gpu));
+    let report = report.unwrap();
+    assert_eq!(report.backend, Backend::Gpu);
+    assert_eq!((report.bands, report.revoked), (6, None));
+    assert!(report.spot_checks >= 6, "at least one a band");
+    assert_eq!(report.pixels, u64::from(WIDTH * HEIGHT));
+    assert_eq!(rgb(&bands), rgb(&rendered(&settings(Backend::Cpu)).1));
+}
+
+#[test]
+fn a_wrong_byte_in_the_first_band_makes_the_cpu_render() {
+    let right = rgb(&rendered(&settings(Backend::Cpu)).1);
+    tamper_with(&[checked(40..48)]);
+    let (report, bands) = rendered(&settings(Backend::Gpu));
+    tamper_with(&[]);
+    let report = report.unwrap();
+    assert_eq!(report.backend, Backend::Cpu);
+    let revoked = report.revoked.unwrap();
+    assert!(revoked.contains("was sure that pixel"), "{revoked}");
+    assert!(rgb(&bands) == right);
+    assert_eq!(report.decided.count(Stage::Gpu), 0);
+    assert_eq!(report.pixels, u64::from(WIDTH * HEIGHT));
+}
+
+/// Rows that were handed on and are right are not handed on again.
+#[test]
+fn a_wrong_byte_later_makes_the_cpu_go_on() {
+    let right = rgb(&rendered(&settings(Backend::Cpu)).1);
+    tamper_with(&[checked(16..24)]);
+    let (report, bands) = rendered(&settings(Backend::Gpu));
+    tamper_with(&[]);
+    assert!(report.unwrap().revoked.is_some());
+    assert!(rgb(&bands) == right);
+    let mut top = HEIGHT;
+    for band in &bands {
+        assert_eq!(band.rows.end, top);
+        top = band.rows.start;
+    }
+    assert_eq!(top, 0);
+}
+
+/// A wrong byte that was handed on before another one is noticed: an error, since it cannot be taken back.
+#[test]
+fn wrong_bytes_that_were_handed_on_are_found() {
+    let [x, y] = checked(40..48);
+    tamper_with(&[[(x + 1) % WIDTH, y], checked(16..24)]);
+    let (report, bands) = rendered(&settings(Backend::Gpu));
+    tamper_with(&[]);
+    assert!(matches!(report, Err(Error::Revoked(_))), "{report:?}");
+    assert_eq!(bands.len(), 3);
+}
+
+/// Without certificates nothing is checked.
+#[test]
+fn fast_takes_the_bytes_as_they_come() {
+    tamper_with(&[checked(40..48)]);
+    let fast = Settings {
+        precision: Precision::Fast,
+        ..settings(Backend::Gpu)
+    };
+    let report = rendered(&fast).0.unwrap();
+    tamper_with(&[]);
+    assert_eq!((report.revoked, report.spot_checks), (None, 0));
+}
+
+#[test]
+fn a_device_that_fails_the_self_test_is_not_trusted() {
+    spoil_next(Some(0));
+    forget_all(true);
+    let (error, _) = rendered(&settings(Backend::Gpu));
+    let (report, bands) = rendered(&settings(Backend::Auto));
+    let fast = Settings {
+        precision: Precision::Fast,
+        ..settings(Backend::Gpu)
+    };
+    let (unasked, _) = rendered(&fast);
+    spoil_next(None);
+    forget_all(false);
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("does not compute as WGSL asks"), "{error}");
+    let report = report.unwrap();
+    assert_eq!(report.backend, Backend::Cpu);
+    assert!(report.fallback.unwrap().contains("x + y: "));
+    assert!(rgb(&bands) == rgb(&rendered(&settings(Backend::Cpu)).1));
+    assert_eq!(unasked.unwrap().backend, Backend::Gpu);
+}
