@@ -12,8 +12,9 @@ use super::{Answer, SOFTWARE, args, say};
 /// What `plumb doctor` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Exit 1: there is none that can be \
-used, and the CPU renders.")]
+Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Each is put through the self-test: \
+hard operands for + - * / sqrt, rounding, conversions, comparisons, exact sums and products behind a barrier. Exit 1: there \
+is none that can be used or trusted, and the CPU renders.")]
 pub(crate) struct Args {
     /// Print the same as JSON
     #[arg(long)]
@@ -32,11 +33,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         to_text(&adapters, chosen)
     };
     say::data(&text)?;
-    Ok(if chosen.is_some() {
-        Answer::Yes
-    } else {
-        Answer::No
-    })
+    let trusted = chosen.and_then(|i| adapters.get(i)).is_some_and(is_trusted);
+    Ok(if trusted { Answer::Yes } else { Answer::No })
 }
 
 fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
@@ -63,6 +61,19 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
             "f64 in shaders",
             format!("{} (not needed)", yes(adapter.shader_f64)),
         );
+        if let Some(outcomes) = &adapter.selftest {
+            let failed: Vec<_> = outcomes
+                .iter()
+                .filter_map(|outcome| Some((outcome, outcome.failure.as_ref()?)))
+                .collect();
+            line("self-test", tested(outcomes.len(), failed.len()));
+            for (outcome, failure) in failed {
+                line(
+                    "",
+                    format!("{} ({}): {failure}", outcome.check, outcome.asked),
+                );
+            }
+        }
         if let Some(problem) = &adapter.problem {
             line("cannot be used", problem.clone());
         }
@@ -70,6 +81,22 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
     let _ = writeln!(text, "  CPU, {}", say::count(args::cores(), "thread"));
     let _ = writeln!(text, "\n{}", verdict(adapters, chosen));
     text
+}
+
+/// How many checks of the arithmetic were passed.
+fn tested(checks: usize, failed: usize) -> String {
+    match failed {
+        0 => format!("passed, {}", say::count(checks, "check")),
+        _ => format!("{failed} of {} failed", say::count(checks, "check")),
+    }
+}
+
+/// Whether certified pixels can come from it.
+fn is_trusted(adapter: &AdapterSummary) -> bool {
+    adapter
+        .selftest
+        .as_ref()
+        .is_some_and(|outcomes| outcomes.iter().all(|outcome| outcome.failure.is_none()))
 }
 
 /// Which one, and why.
@@ -85,6 +112,13 @@ fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
             install_hint()
         );
     };
+    if !is_trusted(adapter) {
+        return format!(
+            "plumb renders on the CPU: {} does not compute as WGSL asks, so nothing it says can be certified.\n\
+             With --precision fast it is taken as it comes; --adapter PART-OF-NAME takes another one.",
+            adapter.name
+        );
+    }
     let usable = adapters
         .iter()
         .filter(|adapter| adapter.problem.is_none())
@@ -148,6 +182,7 @@ mod tests {
             timestamps: true,
             shader_f64: false,
             problem: problem.map(str::to_owned),
+            selftest: problem.is_none().then(Vec::new),
         }
     }
 
@@ -165,6 +200,30 @@ mod tests {
         let broken = [adapter("a", Some("it is too old"))];
         assert!(verdict(&broken, None).contains("none of the adapters can be used"));
         assert!(to_text(&broken, None).contains("it is too old"));
+    }
+
+    #[test]
+    fn an_adapter_that_fails_the_self_test_is_not_used() {
+        let mut wrong = adapter("a", None);
+        wrong.selftest = Some(vec![plumb::gpu::selftest::Outcome {
+            check: "x + y",
+            asked: "one of the two nearest",
+            cases: 7,
+            failure: Some("x = 1 gave 3".to_owned()),
+        }]);
+        let text = to_text(&[wrong], Some(0));
+        assert!(
+            text.contains("self-test       1 of 1 check failed"),
+            "{text}"
+        );
+        assert!(
+            text.contains("x + y (one of the two nearest): x = 1 gave 3"),
+            "{text}"
+        );
+        assert!(
+            text.contains("renders on the CPU: a does not compute"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::GpuError;
 use super::compose::WORKGROUP;
+use super::selftest::{self, Outcome};
 
 /// An open device.
 #[derive(Debug)]
@@ -62,11 +63,24 @@ pub struct AdapterSummary {
     pub shader_f64: bool,
     /// Why plumb cannot use it, if so.
     pub problem: Option<String>,
+    /// How the self-test went, check by check; none where plumb cannot use the adapter.
+    pub selftest: Option<Vec<Outcome>>,
 }
 
-/// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software.
+/// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software; each of them tested.
 pub fn adapters() -> Vec<AdapterSummary> {
-    enumerate().1.iter().map(summary).collect()
+    let (_instance, adapters) = enumerate();
+    let tested = |adapter: &wgpu::Adapter| {
+        let mut summary = summary(adapter);
+        if summary.problem.is_none() {
+            match open_adapter(adapter).and_then(|gpu| selftest::run(&gpu)) {
+                Ok(outcomes) => summary.selftest = Some(outcomes),
+                Err(error) => summary.problem = Some(error.to_string()),
+            }
+        }
+        summary
+    };
+    adapters.iter().map(tested).collect()
 }
 
 /// Opens the first adapter, or the first whose name contains `wanted` in any case of letters.
@@ -76,6 +90,12 @@ pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
     let (_instance, adapters) = enumerate();
     let adapter = choose(&adapters, wanted)?;
     let instance_seconds = start.elapsed().as_secs_f64();
+    let mut gpu = open_adapter(adapter)?;
+    gpu.seconds[0] = instance_seconds;
+    Ok(gpu)
+}
+
+fn open_adapter(adapter: &wgpu::Adapter) -> Result<Gpu, GpuError> {
     let start = Instant::now();
     let info = adapter.get_info();
     let name = describe(&info);
@@ -113,7 +133,7 @@ pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
         identity: identity(&info),
         timestamps,
         lanes,
-        seconds: [instance_seconds, device_seconds],
+        seconds: [0.0, device_seconds],
         trouble,
     })
 }
@@ -280,5 +300,6 @@ fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
         timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
         shader_f64: features.contains(wgpu::Features::SHADER_F64),
         problem: problem(adapter),
+        selftest: None,
     }
 }
