@@ -4,6 +4,9 @@
 struct Job {
     first: vec2u,
     size: vec2u,
+    // 0, for `barrier`.
+    zero: u32,
+    unused: u32,
 }
 
 @group(0) @binding(0) var<uniform> job: Job;
@@ -24,11 +27,12 @@ struct Job {
 //#if rectangle_loop
 @group(0) @binding(4) var<storage, read> rectangles: array<Rectangle>;
 //#end
-//#if small_sphere_buffer
-@group(0) @binding(5) var<storage, read> small_spheres: array<SmallSphere>;
+//#if sphere_buffer
+@group(0) @binding(5) var<storage, read> spheres: array<Sphere>;
 //#end
-//#if wide_sphere_buffer
-@group(0) @binding(6) var<storage, read> wide_spheres: array<WideSphere>;
+//#if sphere_point
+// One for each of `spheres`.
+@group(0) @binding(6) var<storage, read> sphere_points: array<SphereHit>;
 //#end
 //#if bvh
 @group(0) @binding(7) var<storage, read> bvh: array<BvhNode>;

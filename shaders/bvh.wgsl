@@ -12,9 +12,19 @@ struct BvhNode {
 
 // Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir by
 // components. The roundings of the test are relative, a few ulp; the slack covers them.
-fn bvh_enters(index: u32, base: vec3f, inverse: vec3f) -> f32 {
+//#if widened
+fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
+    let base = (*walk).base;
+    let inverse = (*walk).inverse;
+    let a = (bvh[index].min - (*walk).pad - base) * inverse;
+    let b = (bvh[index].max + (*walk).pad - base) * inverse;
+//#else
+fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
+    let base = (*walk).base;
+    let inverse = (*walk).inverse;
     let a = (bvh[index].min - base) * inverse;
     let b = (bvh[index].max - base) * inverse;
+//#end
     let low = min(a, b);
     let high = max(a, b);
     let near = max(max(low.x, low.y), max(low.z, 0.0));
@@ -26,6 +36,10 @@ fn bvh_enters(index: u32, base: vec3f, inverse: vec3f) -> f32 {
 struct Walk {
     base: vec3f,
     inverse: vec3f,
+//#if widened
+    // What the boxes are widened by for a ray that is not known exactly.
+    pad: f32,
+//#end
     waiting: u32,
     index: u32,
     stack: array<u32, BVH_DEPTH>,
@@ -40,20 +54,28 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
     return walk;
 }
 
+//#if widened
+
+// Widens the boxes by as much as the ray may be off where it meets them.
+fn bvh_widen(walk: ptr<function, Walk>, beam: Beam) {
+    (*walk).pad = 1.01 * (beam.base_error + beam.dir_error * (beam.size + BVH_SIZE)) + 4.0 * U * (beam.size + BVH_SIZE);
+}
+//#end
+
 // Goes on to the next box, the nearer child first, as long as it is entered before `reach`. False at the end.
 fn bvh_next(walk: ptr<function, Walk>, reach: f32) -> bool {
     let node = bvh[(*walk).index];
     if node.count == 0u {
-        let left = bvh_enters(node.first, (*walk).base, (*walk).inverse);
-        let right = bvh_enters(node.first + 1u, (*walk).base, (*walk).inverse);
-        let go_left = left >= 0.0 && left <= reach;
-        let go_right = right >= 0.0 && right <= reach;
-        let left_first = go_left && (!go_right || left <= right);
-        if go_left && go_right {
+        let left = bvh_enters(node.first, walk);
+        let right = bvh_enters(node.first + 1u, walk);
+        let go_left = (left >= 0.0) & (left <= reach);
+        let go_right = (right >= 0.0) & (right <= reach);
+        let left_first = go_left & (!go_right | (left <= right));
+        if go_left & go_right {
             (*walk).stack[(*walk).waiting] = node.first + select(0u, 1u, left_first);
             (*walk).waiting += 1u;
         }
-        if go_left || go_right {
+        if go_left | go_right {
             (*walk).index = node.first + select(1u, 0u, left_first);
             return true;
         }

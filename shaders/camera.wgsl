@@ -1,4 +1,7 @@
 // From a pixel to its ray, from a colour to its bytes. Twin: src/cpu/camera.rs.
+//
+// In all files a line that ends in //~ is there only where pixels are certified: it carries an error bound or asks one.
+// Bounds are derived in docs/NUMERICS.md; U and the constants named after what they bound come from the host.
 
 //#if any_object
 // A primary ray: base viewpoint (the origin), direction w through the screen, not of unit length.
@@ -10,6 +13,8 @@ struct Ray {
 //#end
     w: vec3f,
     w2: f32,
+    // 1/|w|
+    inverse_length: f32,
 }
 
 // How far the ray passes from the middle of pixel `anchor`, in pixels.
@@ -34,19 +39,40 @@ fn camera_getdir(pixel: vec2i) -> Ray {
     ray.pixel = pixel;
     ray.w = vec3f(from_pixel(ray, CAMERA_ANCHOR) * CAMERA_STEP + CAMERA_OFFSET, -CAMERA_DISTANCE);
     ray.w2 = dot(ray.w, ray.w);
+    ray.inverse_length = inverseSqrt(ray.w2);
     return ray;
 }
-//#if ambient_only
-
-// From a reflectivity to 255 times the pixel's value: 255/t, t = s·|W| in world units.
-fn inverse_distance(ray: Ray, inverse: f32) -> f32 {
-    return CAMERA_GAIN * inverse / sqrt(ray.w2);
-}
-//#end
 //#end
 
 // The bytes of a pixel from 255 times its value, truncated; red lowest.
+//#if certified
+fn camera_setpix(color: vec3f, error: vec3f) -> u32 {
+    // Below 1 the byte is 0 and from 255 on it is 255, however far that is.
+    let value = clamp(color, vec3f(0.5), vec3f(255.5));
+    // Sure where no integer is as near as the bound, or all is above 255.
+    let nearest = round(value);
+    let clear = (abs(value - nearest) > error) | (color - error > vec3f(255.5));
+    // The side of the nearest integer that is certain, not a truncation that the driver may round anew for.
+    let bytes = min(vec3u(nearest) - select(vec3u(0u), vec3u(1u), value - nearest < vec3f(0.0)), vec3u(255u));
+    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | select(UNDECIDED, 0u, all(clear));
+}
+//#else
 fn camera_setpix(color: vec3f) -> u32 {
     let bytes = vec3u(min(color, vec3f(255.0)));
     return bytes.x | (bytes.y << 8u) | (bytes.z << 16u);
 }
+//#end
+//#if barrier
+
+// Keeps the compiler from looking through: what stands behind this was rounded as it is, whatever the driver does with the
+// rest. `job.zero` is 0, which only the host knows.
+//#if certified
+fn barrier(v: vec3f) -> vec3f {
+    return bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(job.zero));
+}
+//#else
+fn barrier(v: vec3f) -> vec3f {
+    return v;
+}
+//#end
+//#end

@@ -6,72 +6,194 @@ struct Light {
     // Cosine of a spotlight's half angle; below −1 for any other light.
     cosine: f32,
     emissivity: vec3f,
-    unused_0: u32,
+    // |location|
+    size: f32,
     // A spotlight's axis.
     axis: vec3f,
-    unused_1: u32,
+    unused: u32,
 }
 
-// The share of light number `number` that reaches the point along `d`.
-fn shadow(point: Point, d: vec3f, distance: f32, number: u32) -> vec3f {
-    let bit = select(0u, 1u << number, number < 32u);
+// The share of a light that reaches the point.
+struct Shadow {
+    share: vec3f,
+    sure: bool, //~
+}
+
+// The share of light number `number` that reaches the point; `range` ends at the light.
+fn shadow(beam: Beam, range_: Range) -> Shadow {
 //#if clear
-    var filter_ = vec3f(1.0);
-    var range = Range(point.group, bit, 0.0, distance);
+    var range = range_;
+    var share = vec3f(1.0);
     loop {
-        let met = closest_from(point.position, d, range, LANES);
+        let met = closest_from(beam, range, LANES);
         steps += 2u * LANES;
-        if met.object == NOTHING || steps > STEPS_LIMIT {
-            return filter_;
+//#if certified
+        let left = range.limit - met.t;
+        let left_error = met.error + range.limit_error;
+        if (met.rival - range.limit > range.limit_error) & ((met.object == NOTHING) | (left < -left_error)) {
+            return Shadow(share, true);
         }
-        let blocker = locate_met(point.position, d, met);
+        if (met.object == NOTHING) | !met_sure(met) | !(left > left_error) | (steps > STEPS_LIMIT) {
+            return Shadow(vec3f(1.0), false);
+        }
+//#else
+        if (met.object == NOTHING) | (steps > STEPS_LIMIT) {
+            return Shadow(share);
+        }
+//#end
+        let blocker = locate_met(beam, met);
         let material = materials[objects[met.object].material];
         if material.transparency == 0.0 {
-            return vec3f(0.0);
+//#if certified
+            return Shadow(vec3f(0.0), true);
+//#else
+            return Shadow(vec3f(0.0));
+//#end
         }
-        filter_ *= materials[tile_material(blocker)].tint * material.transparency;
+        share *= materials[tile_material(blocker)].tint * material.transparency;
         range.skip = blocker.group;
         range.beyond = met.t;
+        range.beyond_error = met.error; //~
     }
-    return filter_;
+//#if certified
+    return Shadow(share, false);
 //#else
-    return vec3f(select(1.0, 0.0, anything_from(point.position, d, Range(point.group, bit, 0.0, distance))));
+    return Shadow(share);
+//#end
+//#else
+    let found = anything_from(beam, range_);
+//#if certified
+    return Shadow(vec3f(select(1.0, 0.0, found == 2u)), found != 1u);
+//#else
+    return Shadow(vec3f(select(1.0, 0.0, found == 2u)));
+//#end
 //#end
 }
+//#if glint
 
-// What light number `number` brings to a point with diffuse reflectivity `diffuse`, seen by a ray from `base`.
-fn light_term(number: u32, point: Point, base: vec3f, diffuse: vec3f) -> vec3f {
+// x to the power of n, a whole number below 1024.
+fn power(x: f32, n: u32) -> f32 {
+    var result = select(1.0, x, (n & 1u) != 0u);
+    var square = x * x;
+    result *= select(1.0, square, (n & 2u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 4u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 8u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 16u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 32u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 64u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 128u) != 0u);
+    square *= square;
+    result *= select(1.0, square, (n & 256u) != 0u);
+    square *= square;
+    return result * select(1.0, square, (n & 512u) != 0u);
+}
+//#end
+
+// What light number `number` brings to a point with diffuse reflectivity `diffuse`, seen by a ray.
+fn light_term(number: u32, point: Point, seen: Beam, diffuse: vec3f) -> Shade {
+    var shade: Shade;
     let light = lights[number];
-    let toward = light.location - point.position;
-    let distance = length3(toward);
-    let d = toward / distance;
-    let c = dot(d, point.normal);
+    let bit = select(0u, 1u << number, number < 32u);
 //#if level
-    let level = number < 32u && (point.level & (1u << number)) != 0u;
-    if !(distance > 0.0 && c > 0.0) || level {
+    if (point.level & bit) != 0u {
+        return shade;
+    }
+//#end
+    let toward = barrier(light.location - point.position);
+    let toward_2 = dot(toward, toward);
+    let inverse = inverseSqrt(max(toward_2, TINY_SQUARE));
+    let distance = toward_2 * inverse;
+    let d = toward * inverse;
+    let c = dot(d, point.normal);
+//#if certified
+    let toward_error = point.error + U * (light.size + 2.0 * distance);
+    if !(distance > 4.0 * toward_error) {
+        doubt = true;
+        return shade;
+    }
+    let d_error = 1.4 * toward_error * inverse + DIRECTION_ROUNDINGS * U;
+    let distance_error = toward_error + DIRECTION_ROUNDINGS * U * distance;
+    let c_error = d_error + point.normal_error + DOT_ROUNDINGS * U;
+    if c < -c_error {
+        return shade;
+    }
+    var sure = c > c_error;
 //#else
-    if !(distance > 0.0 && c > 0.0) {
-//#end
-        return vec3f(0.0);
+    if !((toward_2 > 0.0) & (c > 0.0)) {
+        return shade;
     }
+//#end
 //#if cone
-    if !(-dot(d, light.axis) > light.cosine) {
-        return vec3f(0.0);
+    let inside = -dot(d, light.axis) - light.cosine;
+//#if certified
+    let inside_error = d_error + (DOT_ROUNDINGS + 3.0) * U;
+    if light.cosine >= -1.0 {
+        if inside < -inside_error {
+            return shade;
+        }
+        sure &= inside > inside_error;
+    }
+//#else
+    if !(inside > 0.0) {
+        return shade;
     }
 //#end
-    let filter_ = shadow(point, d, distance, number);
-    if !any(filter_ > vec3f(0.0)) {
-        return vec3f(0.0);
+//#end
+//#if certified
+    let way = Beam(point.position, d, point.error, d_error, point.size);
+    let blocked = shadow(way, Range(point.group, bit, 0.0, distance, 0.0, distance_error));
+    sure &= blocked.sure;
+//#else
+    let blocked = shadow(Beam(point.position, d), Range(point.group, bit, 0.0, distance));
+//#end
+    if !any(blocked.share > vec3f(0.0)) {
+        return shade;
     }
-    var color = diffuse * light.emissivity * filter_ * (c / distance * UNIT);
+    let full = diffuse * light.emissivity * blocked.share * (inverse * UNIT);
+    shade.color = full * max(c, 0.0);
+    shade.error = full * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + 24.0 * U)); //~
 //#if glint
     let material = materials[objects[point.object].material];
-    let back = base - point.position;
-    let half = back / length3(back) + d;
-    let along = dot(half, point.normal);
-    if material.shininess > 0.0 && along > 0.0 {
-        color += material.specular * light.emissivity * pow(min(along / length3(half), 1.0), material.shininess);
+    if material.shininess > 0.0 {
+        let back = barrier(seen.base - point.position);
+        let back_2 = dot(back, back);
+        let back_inverse = inverseSqrt(max(back_2, TINY_SQUARE));
+        let half = barrier(back * back_inverse + d);
+        let half_2 = dot(half, half);
+        let half_inverse = inverseSqrt(max(half_2, TINY_SQUARE));
+        let cosine = dot(half, point.normal) * half_inverse;
+//#if certified
+        let back_error = seen.base_error + point.error + 2.0 * U * back_2 * back_inverse;
+        let half_error = 1.4 * back_error * back_inverse + d_error + (DIRECTION_ROUNDINGS + 4.0) * U;
+        let cosine_error = 1.4 * half_error * half_inverse + point.normal_error + (DIRECTION_ROUNDINGS + DOT_ROUNDINGS) * U;
+        let near = (back_2 * back_inverse > 4.0 * back_error) & (half_2 * half_inverse > 4.0 * half_error);
+        doubt |= !near | (material.power == 0u);
+        if cosine > -cosine_error {
+            // The upper end of what the cosine may be, and all that lies below it as error.
+            let upper = min(cosine + cosine_error, 1.0);
+            let glint = material.specular * light.emissivity * power(upper, material.power);
+            shade.color += glint;
+            let n = f32(material.power);
+            shade.error += glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
+        }
+//#else
+        if cosine > 0.0 {
+            shade.color += material.specular * light.emissivity * pow(min(cosine, 1.0), material.shininess);
+        }
+//#end
     }
 //#end
-    return color;
+//#if certified
+    if !sure {
+        // It may bring nothing at all.
+        shade.error += shade.color;
+    }
+//#end
+    return shade;
 }

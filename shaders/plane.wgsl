@@ -1,25 +1,42 @@
 // Planes and rectangles of planes. Twin: src/cpu/plane.rs.
+//
+// What is called for each object has neither branches with two arms nor && and ||, which are such branches: a compiler was
+// seen to take twice as long for each of them that stands in a loop (docs/BENCH.md).
 
 //#if plane
 struct Plane {
-    // 1/s = inverse.x·W.x + inverse.y·W.y + inverse.z
+    // 1/s = inverse.x·X + inverse.y·Y + inverse.z, (X, Y) the pixel from CAMERA_ANCHOR.
     inverse: vec3f,
     object: u32,
-    // Hit only where front.x·x + front.y·y + front.z ≥ 0, (x, y) the pixel: the rule H.z ≤ τ.
+    // Hit only where front.x·X + front.y·Y + front.z ≥ 0: the rule H.z ≤ τ.
     front: vec3f,
-    unused: u32,
+    // Number of the surface, if it is shared with another object that a primary ray can hit; else 0.
+    group: u32,
+    // Bounds of the errors of 1/s and of the front's form, on the whole screen.
+    inverse_error: f32,
+    front_error: f32,
+    unused: vec2f,
 }
 
-// 1/s of the hit on the plane; 0 or less for a miss.
-fn plane_hits(plane: Plane, ray: Ray) -> f32 {
-    let inverse = plane.inverse.x * ray.w.x + plane.inverse.y * ray.w.y + plane.inverse.z;
+// The plane as a primary ray meets it.
+fn plane_hits(plane: Plane, ray: Ray) -> Candidate {
+    let at = from_pixel(ray, CAMERA_ANCHOR);
+    var candidate: Candidate;
+    candidate.inverse = plane.inverse.x * at.x + plane.inverse.y * at.y + plane.inverse.z;
 //#if front
-    let pixel = from_pixel(ray, vec2i(0));
-    let side = plane.front.x * pixel.x + plane.front.y * pixel.y + plane.front.z;
-    return select(0.0, inverse, side >= 0.0);
+    let side = plane.front.x * at.x + plane.front.y * at.y + plane.front.z;
+//#if certified
+    candidate.hit = side > plane.front_error;
+    candidate.possible = side > -plane.front_error;
 //#else
-    return inverse;
+    candidate.hit = side >= 0.0;
 //#end
+//#else
+    candidate.hit = true;
+    candidate.possible = true; //~
+//#end
+    candidate.error = plane.inverse_error; //~
+    return candidate;
 }
 //#end
 //#if rectangle
@@ -29,27 +46,44 @@ struct Rectangle {
     inverse: vec3f,
     object: u32,
     front: vec3f,
-    unused: u32,
-    // p_i/s = side_i.x·W.x + side_i.y·W.y + side_i.z, p the coordinates on the rectangle; and the sides' lengths.
+    group: u32,
+    // The hit is inside where all of these are ≥ 0, as forms over (X, Y, 1): p_i/s and (d_i − p_i)/s, p the coordinates on
+    // the rectangle and d its sides, each up to a positive factor.
     side_0: vec3f,
-    length_0: f32,
+    inverse_error: f32,
     side_1: vec3f,
-    length_1: f32,
+    front_error: f32,
+    side_2: vec3f,
+    unused_0: u32,
+    side_3: vec3f,
+    unused_1: u32,
+    // Bounds of the errors of the four forms.
+    side_errors: vec4f,
 }
 
-// 1/s of the hit on the rectangle; 0 or less for a miss.
-fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> f32 {
-    let w = vec3f(ray.w.xy, 1.0);
-    let inverse = dot(rectangle.inverse, w);
-    let p = vec2f(dot(rectangle.side_0, w), dot(rectangle.side_1, w));
-    let lengths = vec2f(rectangle.length_0, rectangle.length_1);
-    let inside = all(p >= vec2f(0.0)) && all(p <= lengths * inverse);
-//#if front
-    let side = dot(rectangle.front, vec3f(from_pixel(ray, vec2i(0)), 1.0));
-    return select(0.0, inverse, inside && side >= 0.0);
+// The rectangle as a primary ray meets it.
+fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> Candidate {
+    let at = vec3f(from_pixel(ray, CAMERA_ANCHOR), 1.0);
+    let sides = vec4f(dot(rectangle.side_0, at), dot(rectangle.side_1, at), dot(rectangle.side_2, at), dot(rectangle.side_3, at));
+    var candidate: Candidate;
+    candidate.inverse = dot(rectangle.inverse, at);
+//#if certified
+    candidate.hit = all(sides > rectangle.side_errors);
+    candidate.possible = all(sides > -rectangle.side_errors);
 //#else
-    return select(0.0, inverse, inside);
+    candidate.hit = all(sides >= vec4f(0.0));
 //#end
+//#if front
+    let side = dot(rectangle.front, at);
+//#if certified
+    candidate.hit &= side > rectangle.front_error;
+    candidate.possible &= side > -rectangle.front_error;
+//#else
+    candidate.hit &= side >= 0.0;
+//#end
+//#end
+    candidate.error = rectangle.inverse_error; //~
+    return candidate;
 }
 //#end
 //#if lit
@@ -64,7 +98,7 @@ struct WorldPlane {
     group: u32,
     own: vec3f,
     object: u32,
-    // p_i = row_i·P − origin_i, the coordinates on the rectangle; the sides' lengths, huge for a plane without end.
+    // p_i = row_i·P − origin_i, the coordinates on the rectangle; the sides' lengths.
     row_0: vec3f,
     origin_0: f32,
     row_1: vec3f,
@@ -74,21 +108,63 @@ struct WorldPlane {
     level: u32,
     // 1 for a rectangle.
     bounded: u32,
+    // Hit only up to this z; huge where all of the plane is.
+    highest: f32,
+    // What of the error of p_i does not come from P.
+    sides_error: f32,
+    unused: vec2f,
 }
 
-// t of the hit on the plane; 0 for a miss.
-fn plane_hits_from(plane: WorldPlane, base: vec3f, dir: vec3f, range: Range) -> f32 {
-    let t = (plane.offset - dot(plane.normal, base)) / dot(plane.normal, dir);
-    let position = (base + t * dir) * plane.keep + plane.own;
-    var hit = t > range.beyond && t < range.limit && position.z <= HIGHEST;
-    // A light in the plane is where the ray meets it: at the light, not before.
-    hit = hit && plane.group != range.skip && (plane.level & range.light) == 0u;
+// The plane as a ray from anywhere meets it.
+fn plane_hits_from(plane: WorldPlane, beam: Beam, range: Range) -> Meeting {
+    var meeting: Meeting;
+    let ahead = plane.offset - dot(plane.normal, beam.base);
+    let along = dot(plane.normal, beam.dir);
+    let inverse = 1.0 / along;
+    let t = ahead * inverse;
+    meeting.t = t;
+//#if certified
+    let ahead_error = beam.base_error + PLANE_ROUNDINGS * U * (abs(plane.offset) + beam.size);
+    let along_error = beam.dir_error + PLANE_ROUNDINGS * U;
+    // Unless it is seen edge-on, t is known to within `error`.
+    let steep = (abs(along) > 2.0 * along_error) & (abs(t) < FARTHEST);
+    let slope = abs(inverse) * (1.0001 + 2.0 * along_error * abs(inverse));
+    let error = (ahead_error + abs(t) * along_error) * slope + 8.0 * U * abs(t);
+    var out = (steep & (t < -error)) | (plane.group == range.skip) | ((plane.level & range.light) != 0u);
+    let in = steep & (t > error) & !out;
+    meeting.error = error;
+    // A plane seen edge-on is met far away, if at all.
+    meeting.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error, steep);
+//#if clear
+    meeting.high = select(T_MAX, t + error, steep);
+//#end
+    let position = (beam.base + t * beam.dir) * plane.keep + plane.own;
+    let position_error = beam.base_error + abs(t) * beam.dir_error + error + POSITION_ROUNDINGS * U * (beam.size + abs(t));
+    let below = plane.highest - position.z;
+    out |= in & (below < -position_error);
+    var inside = below > position_error;
 //#if rectangle_anywhere
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
-        hit = hit && all(p >= vec2f(0.0)) && all(p <= plane.lengths);
+        let margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
+        let margin_error = 1.01 * position_error + plane.sides_error + PLANE_ROUNDINGS * U * (beam.size + abs(t));
+        out |= in & (margin < -margin_error);
+        inside &= margin > margin_error;
     }
 //#end
-    return select(0.0, t, hit);
+    meeting.possible = !out;
+    meeting.hit = in & !out & inside;
+//#else
+    let position = (beam.base + t * beam.dir) * plane.keep + plane.own;
+    // A light in the plane is where the ray meets it: at the light, not before.
+    meeting.hit = (t > 0.0) & (position.z <= plane.highest) & (plane.group != range.skip) & ((plane.level & range.light) == 0u);
+//#if rectangle_anywhere
+    if plane.bounded != 0u {
+        let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
+        meeting.hit &= all(p >= vec2f(0.0)) & all(p <= plane.lengths);
+    }
+//#end
+//#end
+    return meeting;
 }
 //#end

@@ -1,81 +1,88 @@
-// Spheres. Twin: src/cpu/sphere.rs, which has one type for both forms.
+// Spheres. Twin: src/cpu/sphere.rs.
+//#if certified
 
-//#if small_sphere
-// A sphere seen small enough that its center's projection onto the screen serves as origin.
-struct SmallSphere {
-    // e = C/|C|
-    toward: vec3f,
-    // ρ² = (r/|C|)²
-    rho2: f32,
-    // |C|/(|C|² − r²)
+// What an error in `square`, which is at least that error, is to its root.
+fn root_error(square: f32, error: f32, inverse_root: f32) -> f32 {
+    return error * inverse_root * select(1.01, 0.54, square > 4.0 * error);
+}
+//#end
+
+//#if sphere
+// A sphere as primary rays see it, over the pixel (X, Y) from its anchor: 1/s = gain·(along + √disc) for the nearer hit,
+// along linear and disc quadratic. A pixel next to the middle of the outline is the anchor where the outline is an ellipse.
+struct Sphere {
+    // e·W over (X, Y, 1), e the unit vector from the viewpoint to the center.
+    along: vec3f,
     gain: f32,
-    // |C|
-    distance: f32,
-    // W − W_c at pixel `anchor`
-    offset: vec2f,
+    // (r² − |perpendicular|²)·W·W/|C|², the coefficients of X², XY, Y² …
+    square: vec3f,
+    object: u32,
+    // … and of X, Y, 1.
+    affine: vec3f,
+    along_error: f32,
     anchor: vec2i,
-    object: u32,
+    disc_error: f32,
     unused: u32,
 }
 
-// W − W_c on the screen: how far the ray passes from the projected center.
-fn small_sphere_offset(sphere: SmallSphere, ray: Ray) -> vec2f {
-    return from_pixel(ray, sphere.anchor) * CAMERA_STEP + sphere.offset;
-}
-
-// (r² − |perpendicular|²)·W·W / |C|²: > 0 where the ray's line meets the sphere. Both terms keep their relative accuracy.
-fn small_sphere_disc(sphere: SmallSphere, ray: Ray) -> f32 {
-    let offset = small_sphere_offset(sphere, ray);
-    let turn = sphere.toward.x * offset.y - sphere.toward.y * offset.x;
-    return sphere.rho2 * ray.w2 - (sphere.toward.z * sphere.toward.z * dot(offset, offset) + turn * turn);
-}
-
-// 1/s of the nearer hit; 0 or less for a miss; a tangent ray misses.
-fn small_sphere_hits(sphere: SmallSphere, ray: Ray) -> f32 {
-    let along = dot(sphere.toward, ray.w);
-    let disc = small_sphere_disc(sphere, ray);
-    return select(0.0, sphere.gain * (along + sqrt(max(disc, 0.0))), disc > 0.0 && along > 0.0);
+// The sphere as a primary ray meets it; a tangent ray misses.
+fn sphere_hits(sphere: Sphere, ray: Ray) -> Candidate {
+    let at = from_pixel(ray, sphere.anchor);
+    let along = sphere.along.x * at.x + sphere.along.y * at.y + sphere.along.z;
+    let disc = (sphere.square.x * at.x + sphere.square.y * at.y + sphere.affine.x) * at.x
+        + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;
+    var candidate: Candidate;
+//#if certified
+    candidate.hit = (disc > sphere.disc_error) & (along > sphere.along_error);
+    candidate.possible = (disc > -sphere.disc_error) & (along > -sphere.along_error);
+    let least = max(disc, sphere.disc_error);
+    let inverse_root = inverseSqrt(least);
+    candidate.inverse = sphere.gain * (along + least * inverse_root);
+    candidate.error = sphere.gain * (sphere.along_error + root_error(least, sphere.disc_error, inverse_root)) + ROOT_ROUNDINGS * U * abs(candidate.inverse);
+//#else
+    candidate.hit = (disc > 0.0) & (along > 0.0);
+    candidate.inverse = sphere.gain * (along + sqrt(max(disc, 0.0)));
+//#end
+    return candidate;
 }
 //#end
-//#if small_sphere_point
+//#if sphere_point
 
-// H − C at the nearer hit: s·U + (s/s_c − 1)·C, U = W − W_c; see the twin.
-fn small_sphere_from_center(sphere: SmallSphere, ray: Ray, inverse: f32) -> vec3f {
-    let offset = small_sphere_offset(sphere, ray);
-    let disc = max(small_sphere_disc(sphere, ray), 0.0);
-    let to_center = CAMERA_DISTANCE / -sphere.toward.z;
-    let nearer = -(to_center * (dot(sphere.toward.xy, offset) + sqrt(disc)) + dot(offset, offset)) / ray.w2;
-    return vec3f(offset / inverse, 0.0) + nearer * sphere.distance * sphere.toward;
-}
-//#end
-//#if wide_sphere
-
-// A sphere seen under more than a right angle, or whose center is not on the screen's side.
-struct WideSphere {
-    // e = C/|C|
-    toward: vec3f,
-    // κ² = (|C|² − r²)/|C|²
-    kappa2: f32,
-    // |C|/(|C|² − r²)
-    gain: f32,
-    // |C|
-    distance: f32,
-    object: u32,
+// Where a sphere that a primary ray met is met: (H − C)/(r·s) = forms·(X, Y, 1) − center·√disc.
+struct SphereHit {
+    form_x: vec3f,
+    inverse_radius: f32,
+    form_y: vec3f,
+    // Bound of the errors of the forms, as a vector.
+    form_error: f32,
+    form_z: vec3f,
+    // gain·|C|/r
+    center_size: f32,
+    // gain·C/r
+    center: vec3f,
     unused: u32,
 }
 
-// 1/s of the nearer hit; 0 or less for a miss; a tangent ray misses.
-fn wide_sphere_hits(sphere: WideSphere, ray: Ray) -> f32 {
-    let along = dot(sphere.toward, ray.w);
-    let disc = along * along - sphere.kappa2 * ray.w2;
-    return select(0.0, sphere.gain * (along + sqrt(max(disc, 0.0))), disc > 0.0 && along > 0.0);
-}
+// The unit normal at the hit, outward; in its fourth component the bound of its error.
+fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
+    let sphere = spheres[index];
+    let point = sphere_points[index];
+    let at = vec3f(from_pixel(ray, sphere.anchor), 1.0);
+    let disc = (sphere.square.x * at.x + sphere.square.y * at.y + sphere.affine.x) * at.x
+        + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;
+    let s = 1.0 / hit.inverse;
+//#if certified
+    let least = max(disc, sphere.disc_error);
+    let inverse_root = inverseSqrt(least);
+    let root = least * inverse_root;
+    let normal = barrier((vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s);
+    let parts_error = point.form_error + point.center_size * (root_error(least, sphere.disc_error, inverse_root) + ROOT_ROUNDINGS * U * root);
+    return vec4f(normal, 1.01 * s * (parts_error + hit.error) + NORMAL_ROUNDINGS * U);
+//#else
+    let root = sqrt(max(disc, 0.0));
+    let normal = (vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s;
+    return vec4f(normal / sqrt(dot(normal, normal)), 0.0);
 //#end
-//#if wide_sphere_point
-
-// H − C at the nearer hit.
-fn wide_sphere_from_center(sphere: WideSphere, ray: Ray, inverse: f32) -> vec3f {
-    return ray.w / inverse - sphere.distance * sphere.toward;
 }
 //#end
 //#if lit
@@ -88,20 +95,92 @@ struct WorldSphere {
     object: u32,
     // Bit i: light i lies on the sphere.
     level: u32,
-    // Its number among the small spheres plus one; 0 for none.
-    seen: u32,
+    // |C|
+    size: f32,
+    inverse_radius: f32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
 }
 
-// t of the nearer hit, by the perpendicular from the center to the ray; 0 for a miss. `dir` is of unit length.
-fn sphere_hits_from(sphere: WorldSphere, base: vec3f, dir: vec3f, range: Range) -> f32 {
-    let to_center = sphere.center - base;
-    let along = dot(to_center, dir);
-    let perpendicular = to_center - along * dir;
-    let disc = sphere.radius * sphere.radius - dot(perpendicular, perpendicular);
-    let t = along - sqrt(max(disc, 0.0));
+// How a ray passes a sphere.
+struct Passage {
+    // From the ray to the center, at right angles; and its square.
+    perpendicular: vec3f,
+    apart: f32,
+    // Where along the ray that is.
+    along: f32,
+    // How far the perpendicular, as a vector, and `along` may be off. Where the ray meets the sphere, that is, or seems to:
+    // the bound takes the perpendicular for no longer than the radius.
+    off: f32, //~
+}
+
+fn sphere_passage(center: vec3f, radius: f32, size: f32, beam: Beam) -> Passage {
+    var passage: Passage;
+    let to_center = barrier(center - beam.base);
+    passage.along = dot(to_center, beam.dir);
+    passage.perpendicular = barrier(to_center - passage.along * beam.dir);
+    passage.apart = dot(passage.perpendicular, passage.perpendicular);
+//#if certified
+    let far = abs(passage.along) + radius;
+    passage.off = 1.01 * beam.base_error + U * size + far * (2.05 * beam.dir_error + PERPENDICULAR_ROUNDINGS * U);
+//#end
+    return passage;
+}
+
+// The nearer hit, by the perpendicular from the ray to the center.
+fn sphere_hits_from(sphere: WorldSphere, beam: Beam, range: Range) -> Meeting {
+    var meeting: Meeting;
+    let passage = sphere_passage(sphere.center, sphere.radius, sphere.size, beam);
+    let disc = sphere.radius * sphere.radius - passage.apart;
+//#if certified
+    let disc_error = passage.off * (2.01 * sphere.radius + passage.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
+    let least = max(disc, disc_error);
+    let inverse_root = inverseSqrt(least);
+    let root = least * inverse_root;
+    let t = passage.along - root;
+    let error = passage.off + root_error(least, disc_error, inverse_root) + ROOT_ROUNDINGS * U * (abs(passage.along) + root);
+    meeting.t = t;
+    meeting.error = error;
+    meeting.low = t - error;
+//#if clear
+    meeting.high = select(passage.along + passage.off, t + error, disc > disc_error);
+//#end
+    var out = (disc < -disc_error) | (t < -error) | (sphere.group == range.skip);
+    meeting.hit = !out & (disc > disc_error) & (t > error);
+//#if level
+    // From outside, a light on the sphere is where the ray would enter it: at the light, not before; or where it leaves.
+    let level = (sphere.level & range.light) != 0u;
+    let entry = range.limit - passage.along;
+    out |= level & (entry < -(range.limit_error + error));
+    meeting.hit &= !level | (entry > range.limit_error + error);
+//#end
+    meeting.possible = !out;
+//#else
+    meeting.t = passage.along - sqrt(max(disc, 0.0));
     // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
-    let at_light = (sphere.level & range.light) != 0u && range.limit < along;
-    let hit = disc > 0.0 && along > 0.0 && t > range.beyond && t < range.limit && sphere.group != range.skip && !at_light;
-    return select(0.0, t, hit);
+    let at_light = ((sphere.level & range.light) != 0u) & (range.limit < passage.along);
+    meeting.hit = (disc > 0.0) & (passage.along > 0.0) & (meeting.t > 0.0) & (sphere.group != range.skip) & !at_light;
+//#end
+    return meeting;
+}
+//#end
+//#if sphere_beyond
+
+// H − C over the radius, where a ray from anywhere meets the sphere; in the fourth component the bound of its error.
+fn sphere_met(sphere: WorldSphere, beam: Beam) -> vec4f {
+    let passage = sphere_passage(sphere.center, sphere.radius, sphere.size, beam);
+    let disc = max(sphere.radius * sphere.radius - passage.apart, TINY_SQUARE);
+    let inverse_root = inverseSqrt(disc);
+    let root = disc * inverse_root;
+    let normal = barrier((passage.perpendicular + root * beam.dir) * -sphere.inverse_radius);
+//#if certified
+    let disc_error = passage.off * (2.01 * sqrt(passage.apart) + passage.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
+    let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
+    let error = 1.01 * (passage.off + reach_error + root * beam.dir_error);
+    return vec4f(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);
+//#else
+    return vec4f(normal, 0.0);
+//#end
 }
 //#end

@@ -19,10 +19,11 @@ struct Material {
     // 0 where there is no glint.
     shininess: f32,
     specular: vec3f,
-    unused_0: u32,
+    // The shininess if it is a whole number from 1 to 1023, else 0.
+    power: u32,
     // What tints light that goes through.
     tint: vec3f,
-    unused_1: u32,
+    unused: u32,
 }
 //#else
 struct Object {
@@ -38,19 +39,37 @@ struct Point {
     object: u32,
     // From the viewpoint.
     position: vec3f,
+//#if certified
+    // How far the true hit may be, and |position.x| + |position.y| + |position.z|.
+    error: f32,
+    size: f32,
+//#end
 //#if from_center
-    // H − center, on a sphere.
+    // (H − center)/radius, on a sphere.
     from_center: vec3f,
+    from_center_error: f32, //~
 //#end
 //#if lit
     // Of unit length.
     normal: vec3f,
+    normal_error: f32, //~
     group: u32,
 //#end
 //#if level
     // Bit i: light i lies in the plane of the point.
     level: u32,
 //#end
+}
+//#if certified
+
+// Set where a decision that the colour depends on cannot be made.
+var<private> doubt: bool;
+//#end
+
+// A colour, and the bound of its error.
+struct Shade {
+    color: vec3f,
+    error: vec3f, //~
 }
 //#if lit
 
@@ -59,11 +78,32 @@ fn length3(v: vec3f) -> f32 {
     return sqrt(dot(v, v));
 }
 //#end
+//#if whole
+
+// floor(index), from the nearest whole number and the side of it that the index lies on: where that side is certain the
+// floor is, however often the driver rounds the index anew.
+fn floor3(index: vec3f) -> vec3f {
+    let nearest = round(index);
+    return nearest - select(vec3f(0.0), vec3f(1.0), index - nearest < vec3f(0.0));
+}
+//#end
 //#if odd
 
 // 1 where the integers are odd, 0 where they are even.
 fn odd3(index: vec3f) -> vec3f {
     return index - 2.0 * floor(index * 0.5);
+}
+//#end
+//#if index
+
+// How far a position may be off for an index, per unit of the index's slope.
+fn index_error(point: Point) -> f32 {
+    return point.error + INDEX_ROUNDINGS * U * point.size;
+}
+
+// Leaves a doubt where an index is no farther from a whole number than its error.
+fn certain(clear: vec3f) {
+    doubt |= !all(clear > vec3f(0.0));
 }
 //#end
 //#if tiled
@@ -79,13 +119,17 @@ struct Tiled {
     altindex: u32,
     // The host's parities together, 0 to 3: tiles whose sum is odd have the other material.
     parity: f32,
-    unused: vec3f,
+    // |row_0| and |row_1|, and what of the indices' errors does not come from the position.
+    spread: vec2f,
+    errors: vec2f,
 }
 
 // Whether a tile is of the plane's own material.
-fn tplane_foreground(plane: Tiled, position: vec3f) -> bool {
+fn tplane_foreground(plane: Tiled, point: Point) -> bool {
+    let position = point.position;
     let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
-    let odd = odd3(vec3f(floor(index), plane.parity));
+    certain(vec3f(abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors), 1.0)); //~
+    let odd = odd3(floor3(vec3f(index, plane.parity + 0.5)));
     return odd3(vec3f(odd.x + odd.y + odd.z)).x == 0.0;
 }
 //#end
@@ -94,34 +138,47 @@ fn tplane_foreground(plane: Tiled, position: vec3f) -> bool {
 struct Pplane {
     // The indices floor(2·H + 1000): floor(P·per_unit + fraction), up to `parity` (0 or 1 each).
     per_unit: vec3f,
-    unused_0: u32,
+    // What of the indices' errors does not come from the position.
+    index_error: f32,
     fraction: vec3f,
-    unused_1: u32,
+    // The same for the components of H − point.
+    from_point_error: f32,
     parity: vec3f,
-    unused_2: u32,
+    unused: u32,
     // The components x and y of H − point: P·from_point.xy − from_point.zw.
     from_point: vec4f,
 }
 
 // What a procedural plane's shader is told about the hit.
 struct PlanePoint {
-    position: vec3f,
+    point: Point,
     ambient: vec3f,
     plane: Pplane,
 }
 //#end
 //#if pplane_odd
 
-// Parities of floor(2·H + 1000), each 0 or 1.
-fn pplane_odd(at: PlanePoint) -> vec3f {
-    return odd3(floor(at.position * at.plane.per_unit + at.plane.fraction) + at.plane.parity);
+// Parities of floor(2·H + 1000), each 0 or 1, for the axes asked for (1, else 0).
+fn pplane_odd(at: PlanePoint, axes: vec3f) -> vec3f {
+    let index = at.point.position * at.plane.per_unit + at.plane.fraction;
+//#if certified
+    let clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
+    certain(select(vec3f(1.0), clear, axes > vec3f(0.0)));
+//#end
+    return odd3(floor3(index) + at.plane.parity);
 }
 //#end
 //#if pplane_from_point
 
-// Components x and y of H − point.
-fn pplane_from_point(at: PlanePoint) -> vec2f {
-    return at.position.xy * at.plane.from_point.xy - at.plane.from_point.zw;
+// Components x and y of H − point, and the bound of their errors.
+fn pplane_from_point(at: PlanePoint) -> vec3f {
+    let v = at.point.position.xy * at.plane.from_point.xy - at.plane.from_point.zw;
+//#if certified
+    let scale = max(abs(at.plane.from_point.x), abs(at.plane.from_point.y));
+    return vec3f(v, scale * index_error(at.point) + at.plane.from_point_error);
+//#else
+    return vec3f(v, 0.0);
+//#end
 }
 //#end
 //#if textured
@@ -137,16 +194,29 @@ struct Texplane {
     first: u32,
     // 1 where the picture repeats, 0 where it is stretched.
     repeats: u32,
+    // |row_0| and |row_1|, and what of the index's error does not come from the position.
+    spread: vec2f,
+    errors: vec2f,
 }
 
 // The texel at a point of a texplane, each channel byte/256.
-fn texel(plane: Texplane, position: vec3f) -> vec3f {
-    var p = floor(vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1));
+fn texel(plane: Texplane, point: Point) -> vec3f {
+    let position = point.position;
+    let index = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
     let size = vec2f(plane.size);
+//#if certified
+    // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
+    let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u) | any(size < vec2f(2.0)));
+    let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)), select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
+    let clear = abs(index - edge) - (plane.spread * index_error(point) + plane.errors) + lone;
+    certain(vec3f(clear, 1048576.0 - max(abs(index.x), abs(index.y))));
+//#end
+    var p = floor3(vec3f(index, 0.5)).xy;
     if plane.repeats != 0u {
-        p -= size * floor(p / size);
+        // The half keeps the quotient away from whole numbers, whatever its rounding.
+        p -= size * floor((p + 0.5) / size);
     }
-    // The remainder of a rounded quotient may be off by one turn; an edge may be overshot.
+    // An edge may be overshot.
     let place = vec2u(clamp(p, vec2f(0.0), size - 1.0));
     let packed = texels[plane.first + place.y * plane.size.x + place.x];
     return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) / 256.0;
@@ -156,25 +226,39 @@ fn texel(plane: Texplane, position: vec3f) -> vec3f {
 
 // What a procedural sphere's shader is told about the hit.
 struct SpherePoint {
+    // (H − center)/radius, and the bound of its error.
     from_center: vec3f,
+    error: f32,
     ambient: vec3f,
 }
 //#end
 //#if color_wheel
 
-// (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)), θ the angle of (x, y) from +x; θ = 0 at the origin.
-// By 1 + cos 2α = 2·cos²α: no acos, no cos, and never less than 0.
-fn color_wheel(x: f32, y: f32) -> vec3f {
-    let larger = max(abs(x), abs(y));
-    if !(larger > 0.0) {
-        return vec3f(2.0, 0.5, 0.5);
+// (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)), θ the angle of (x, y) from +x; θ = 0 at the origin. No acos and
+// no cos: cos 2θ = (x² − y²)/(x² + y²), sin 2θ = 2xy/(x² + y²). Both components may be off by `error`.
+fn color_wheel(x: f32, y: f32, error: f32) -> Shade {
+    var shade: Shade;
+    let square = x * x + y * y;
+//#if certified
+    if !(square > 1024.0 * error * error + TINY_SQUARE) {
+        doubt = true;
+        return shade;
     }
-    let v = vec2f(x, y) / larger;
-    let cosines = vec3f(v.x, 0.5 * v.x - HALF_ROOT_3 * v.y, 0.5 * v.x + HALF_ROOT_3 * v.y);
-    return cosines * cosines * (2.0 / dot(v, v));
+//#else
+    if !(square > 0.0) {
+        shade.color = vec3f(2.0, 0.5, 0.5);
+        return shade;
+    }
+//#end
+    let inverse = 1.0 / square;
+    let cosine = (x - y) * (x + y) * inverse;
+    let sine = 2.0 * x * y * inverse;
+    shade.color = max(vec3f(1.0 + cosine, 1.0 - 0.5 * cosine - HALF_ROOT_3 * sine, 1.0 - 0.5 * cosine + HALF_ROOT_3 * sine), vec3f(0.0));
+    shade.error = vec3f(3.0 * error * inverseSqrt(square) + WHEEL_ROUNDINGS * U); //~
+    return shade;
 }
 
-const HALF_ROOT_3 = 0.86602540378443864676f;
+const HALF_ROOT_3 = 0x1.bb67aep-1f;
 //#end
 //#insert procedural
 
@@ -185,7 +269,7 @@ fn tile_material(point: Point) -> u32 {
 //#if tiled
     if (object.kind & 255u) == KIND_TILED {
         let plane = tiled_planes[object.kind >> 8u];
-        return select(plane.altindex, object.material, tplane_foreground(plane, point.position));
+        return select(plane.altindex, object.material, tplane_foreground(plane, point));
     }
 //#end
     return object.material;
@@ -197,7 +281,7 @@ fn getdiff(point: Point) -> vec3f {
 //#if textured
     let object = objects[point.object];
     if (object.kind & 255u) == KIND_TEXTURED {
-        return diffuse * texel(texplanes[object.kind >> 8u], point.position);
+        return diffuse * texel(texplanes[object.kind >> 8u], point);
     }
 //#end
     return diffuse;
@@ -205,12 +289,13 @@ fn getdiff(point: Point) -> vec3f {
 
 //#end
 // The ambient reflectivity at a point.
-fn getamb(point: Point) -> vec3f {
+fn getamb(point: Point) -> Shade {
+    var shade: Shade;
     let object = objects[point.object];
 //#if lit
-    let ambient = materials[tile_material(point)].ambient;
+    shade.color = materials[tile_material(point)].ambient;
 //#else
-    let ambient = object.ambient;
+    shade.color = object.ambient;
 //#end
 //#if modulated
     let record = object.kind >> 8u;
@@ -218,17 +303,17 @@ fn getamb(point: Point) -> vec3f {
 //#if tiled_ambient
         case KIND_TILED: {
             let plane = tiled_planes[record];
-            return select(plane.altmaterial, ambient, tplane_foreground(plane, point.position));
+            shade.color = select(plane.altmaterial, shade.color, tplane_foreground(plane, point));
         }
 //#end
 //#if textured
         case KIND_TEXTURED: {
-            return ambient * texel(texplanes[record], point.position);
+            shade.color *= texel(texplanes[record], point);
         }
 //#end
 //#insert procedural_cases
         default: {}
     }
 //#end
-    return ambient;
+    return shade;
 }

@@ -10,10 +10,36 @@ const STEPS_LIMIT = 50000u;
 //#end
 
 //#if any_object
+// An object as a primary ray meets it.
+struct Candidate {
+    // 1/s, where it is hit: the larger, the nearer; 0 or less is a miss.
+    inverse: f32,
+    // For sure, where pixels are certified.
+    hit: bool,
+//#if certified
+    error: f32,
+    // Whether it may be hit.
+    possible: bool,
+//#end
+}
+
 struct Hit {
     // 1/s: the larger, the nearer; 0 is no hit.
     inverse: f32,
     object: u32,
+//#if sphere_point
+    // Number among the spheres or planes.
+    index: u32,
+//#end
+//#if certified
+    error: f32,
+    // Of everything else that may be hit, the largest that 1/s may be.
+    rival: f32,
+//#if groups
+    // Its surface, if others share it: of these the first in the file is hit first, and the others do not count.
+    group: u32,
+//#end
+//#end
 //#if bvh
     // Whether every object was asked.
     decided: bool,
@@ -21,44 +47,59 @@ struct Hit {
 }
 
 // Takes a hit if it is nearer, or as near and first in the file.
-fn nearer(closest: ptr<function, Hit>, inverse: f32, object: u32) {
+fn nearer(closest: ptr<function, Hit>, candidate: Candidate, object: u32, index: u32, group: u32) {
+//#if certified
+    var hit = candidate.hit;
+    var possible = candidate.possible;
+//#if groups
+    let fresh = (group == 0u) | (group != (*closest).group);
+    hit &= fresh;
+    possible &= fresh;
+//#end
+    let takes = hit & (candidate.inverse > (*closest).inverse);
+    let high = select(0.0, candidate.inverse + candidate.error, possible);
+    (*closest).rival = max((*closest).rival, select(high, (*closest).inverse + (*closest).error, takes));
+    (*closest).error = select((*closest).error, candidate.error, takes);
+//#if groups
+    (*closest).group = select((*closest).group, group, takes);
+//#end
+//#else
 //#if mixed
     let best = *closest;
-    if inverse > best.inverse || (inverse == best.inverse && inverse > 0.0 && object < best.object) {
+    let takes = candidate.hit & (candidate.inverse > 0.0)
+        & ((candidate.inverse > best.inverse) | ((candidate.inverse == best.inverse) & (object < best.object)));
 //#else
     // Objects of one kind come in the order of the file.
-    if inverse > (*closest).inverse {
+    let takes = candidate.hit & (candidate.inverse > (*closest).inverse);
 //#end
-        (*closest).inverse = inverse;
-        (*closest).object = object;
-    }
+//#end
+    (*closest).inverse = select((*closest).inverse, candidate.inverse, takes);
+    (*closest).object = select((*closest).object, object, takes);
+//#if sphere_point
+    (*closest).index = select((*closest).index, index, takes);
+//#end
 }
 
 // The closest object that the ray hits.
 fn find_closest_object(ray: Ray) -> Hit {
     var closest: Hit;
 //#insert unrolled
-//#if plane_loop
-    for (var i = 0u; i < PLANES; i += 1u) {
-        nearer(&closest, plane_hits(planes[i], ray), planes[i].object);
-    }
-//#end
 //#if rectangle_loop
     for (var i = 0u; i < RECTANGLES; i += 1u) {
-        nearer(&closest, rectangle_hits(rectangles[i], ray), rectangles[i].object);
+        nearer(&closest, rectangle_hits(rectangles[i], ray), rectangles[i].object, i, rectangles[i].group);
     }
 //#end
-//#if small_sphere_loop
-    for (var i = 0u; i < SMALL_SPHERES; i += 1u) {
-        nearer(&closest, small_sphere_hits(small_spheres[i], ray), small_spheres[i].object);
+//#if plane_loop
+    for (var i = 0u; i < PLANES; i += 1u) {
+        nearer(&closest, plane_hits(planes[i], ray), planes[i].object, i, planes[i].group);
     }
 //#end
-//#if wide_sphere_loop
-    for (var i = 0u; i < WIDE_SPHERES; i += 1u) {
-        nearer(&closest, wide_sphere_hits(wide_spheres[i], ray), wide_spheres[i].object);
+//#if sphere_loop
+    for (var i = SPHERE_TREE; i < SPHERES; i += 1u) {
+        nearer(&closest, sphere_hits(spheres[i], ray), spheres[i].object, i, 0u);
     }
 //#end
-//#if small_sphere_tree
+//#if sphere_tree
     var walk = bvh_begin(vec3f(0.0), ray.w);
     loop {
         let node = bvh[walk.index];
@@ -67,9 +108,15 @@ fn find_closest_object(ray: Ray) -> Hit {
             break;
         }
         for (var i = node.first; i < node.first + node.count; i += 1u) {
-            nearer(&closest, small_sphere_hits(small_spheres[i], ray), small_spheres[i].object);
+            nearer(&closest, sphere_hits(spheres[i], ray), spheres[i].object, i, 0u);
         }
-        if !bvh_next(&walk, 1.0 / max(closest.inverse, 1e-37)) {
+        // What is truly nearer than the closest is entered before it.
+//#if certified
+        let least = closest.inverse - closest.error;
+//#else
+        let least = closest.inverse;
+//#end
+        if !bvh_next(&walk, 1.000002 / max(least, 1e-30)) {
             closest.decided = true;
             break;
         }
@@ -77,34 +124,69 @@ fn find_closest_object(ray: Ray) -> Hit {
 //#end
 //#if world_bvh
     // In a lit scene one tree serves all rays.
-    let length = sqrt(ray.w2);
-    let met = closest_from(vec3f(0.0), ray.w / length, Range(NOTHING, 0u, 0.0, T_MAX), 1u);
-    if met.object != NOTHING {
-        nearer(&closest, length / met.t, met.object);
-    }
+    let beam = primary_beam(ray);
+//#if certified
+    let met = closest_from(beam, Range(NOTHING, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
+    let length = ray.w2 * ray.inverse_length;
+    let own = length / met.t;
+    nearer(&closest, Candidate(own, met.object != NOTHING, own * (1.01 * met.error / met.t + LENGTH_ERROR), met.object != NOTHING), met.object, 0u, 0u);
+    // Whatever else the ray may meet.
+    closest.rival = max(closest.rival, select(length / max(met.rival, 1e-30) * (1.0 + LENGTH_ERROR), 0.0, met.rival >= T_MAX));
+//#else
+    let met = closest_from(beam, Range(NOTHING, 0u, 0.0, T_MAX), 1u);
+    nearer(&closest, Candidate(1.0 / (ray.inverse_length * met.t), met.object != NOTHING), met.object, 0u, 0u);
+//#end
     closest.decided = steps <= STEPS_LIMIT;
 //#end
     return closest;
 }
+//#if lit
+
+// The primary ray as one from anywhere.
+fn primary_beam(ray: Ray) -> Beam {
+//#if certified
+    return Beam(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0);
+//#else
+    return Beam(vec3f(0.0), ray.w * ray.inverse_length);
+//#end
+}
+//#end
 
 // Where a primary ray hit.
 fn locate(ray: Ray, hit: Hit) -> Point {
     var point: Point;
     point.object = hit.object;
 //#if position
-    point.position = ray.w / hit.inverse;
+    let s = 1.0 / hit.inverse;
+    point.position = ray.w * s;
+//#if certified
+    let length = ray.w2 * ray.inverse_length;
+    point.error = 1.01 * s * (W_ERROR + length * (s * hit.error + 5.0 * U));
+    point.size = abs(point.position.x) + abs(point.position.y) + abs(point.position.z);
+//#end
 //#end
 //#if lit
     complete(&point);
+//#if sphere_point
+    if (objects[hit.object].place & SPHERE_BIT) != 0u {
+        on_sphere(&point, sphere_normal(hit.index, ray, hit));
+    }
 //#end
-//#if from_center
-    let object = objects[hit.object];
-//#insert from_center_cases
-//#end
+//#if bvh
 //#if lit_sphere
     if (objects[hit.object].place & SPHERE_BIT) != 0u {
-        point.normal = normalize3(point.from_center);
+        on_sphere(&point, sphere_met(world_spheres[objects[hit.object].place & ~SPHERE_BIT], primary_beam(ray)));
     }
+//#end
+//#end
+//#else
+//#if sphere_point
+    if (objects[hit.object].kind & 128u) != 0u {
+        let normal = sphere_normal(hit.index, ray, hit);
+        point.from_center = normal.xyz;
+        point.from_center_error = normal.w; //~
+    }
+//#end
 //#end
     return point;
 }
@@ -112,44 +194,65 @@ fn locate(ray: Ray, hit: Hit) -> Point {
 
 const SPHERE_BIT = 0x80000000u;
 
-fn normalize3(v: vec3f) -> vec3f {
-    return v / length3(v);
-}
-
-// Fills in what follows from the object and the position.
+// Fills in what follows from the object alone, on a plane.
 fn complete(point: ptr<function, Point>) {
     let object = objects[(*point).object];
     (*point).group = object.group;
-    if (object.place & SPHERE_BIT) != 0u {
-//#if lit_sphere
-        let sphere = world_spheres[object.place & ~SPHERE_BIT];
-        (*point).from_center = (*point).position - sphere.center;
-        (*point).normal = normalize3((*point).from_center);
-//#end
-    } else {
 //#if lit_plane
+    if (object.place & SPHERE_BIT) == 0u {
         let plane = world_planes[object.place];
         (*point).normal = plane.normal;
+        (*point).normal_error = 2.0 * U; //~
         (*point).position = (*point).position * plane.keep + plane.own;
-//#end
 //#if level
         (*point).level = plane.level;
 //#end
     }
+//#end
 }
+//#if lit_sphere
+
+// Takes the normal of a sphere, with the bound of its error.
+fn on_sphere(point: ptr<function, Point>, normal: vec4f) {
+    (*point).from_center = normal.xyz;
+    (*point).normal = normal.xyz;
+//#if certified
+    (*point).from_center_error = normal.w;
+    (*point).normal_error = normal.w;
+//#else
+    (*point).normal /= length3(normal.xyz);
+//#end
+}
+//#end
 
 // Where a ray from anywhere hit.
-fn locate_met(base: vec3f, dir: vec3f, met: Met) -> Point {
+fn locate_met(beam: Beam, met: Met) -> Point {
     var point: Point;
     point.object = met.object;
-    point.position = base + met.t * dir;
+    point.position = barrier(beam.base + met.t * beam.dir);
+//#if certified
+    point.error = 1.01 * (beam.base_error + met.t * beam.dir_error + met.error) + POSITION_ROUNDINGS * U * (beam.size + met.t);
+//#end
     complete(&point);
+//#if sphere_beyond
+    let object = objects[met.object];
+    if (object.place & SPHERE_BIT) != 0u {
+        let sphere = world_spheres[object.place & ~SPHERE_BIT];
+        let normal = sphere_met(sphere, beam);
+        on_sphere(&point, normal);
+        point.position = barrier(sphere.center + sphere.radius * normal.xyz);
+        point.error = 1.01 * sphere.radius * normal.w + POSITION_ROUNDINGS * U * sphere.size; //~
+    }
+//#end
+//#if certified
+    point.size = abs(point.position.x) + abs(point.position.y) + abs(point.position.z);
+//#end
     return point;
 }
 
-// What the lights and the light that is everywhere make of a point, seen by a ray from `base`.
-fn shade(point: Point, base: vec3f) -> vec3f {
-    var color = getamb(point);
+// What the lights and the light that is everywhere make of a point, seen by a ray.
+fn shade(point: Point, seen: Beam) -> Shade {
+    var sum = getamb(point);
     let diffuse = getdiff(point);
     steps += 1u;
     for (var i = 0u; i < LIGHTS; i += 1u) {
@@ -157,31 +260,44 @@ fn shade(point: Point, base: vec3f) -> vec3f {
         if steps > STEPS_LIMIT {
             break;
         }
-        color += light_term(i, point, base, diffuse);
+        let term = light_term(i, point, seen, diffuse);
+        sum.color += term.color;
+        sum.error += term.error + 2.0 * U * sum.color; //~
     }
-    return color;
+    return sum;
 }
+//#if branches
 
 // A ray of the tree that a sample grows.
 struct Branch {
-    base: vec3f,
+    beam: Beam,
     // Length of the path before it.
     total: f32,
-    dir: vec3f,
+    total_error: f32, //~
     // The group of surfaces that it left from.
     last: u32,
-    // What its colour counts for.
+    // What its colour counts for; certified, by a factor within 1 ± this.
     weight: vec3f,
+    weight_error: f32, //~
 }
+//#if stack
+
+// The mirror rays that wait while another ray is followed. (Not a variable of the function: that made one driver's code
+// twice as slow, and its compile time grows with the stack's size.)
+var<private> stack: array<Branch, STACK>;
+var<private> waiting: u32;
+//#end
+//#end
+//#end
 //#end
 
 // The highest byte of a pixel that the CPU has to decide.
 const UNDECIDED = 0xff000000u;
-//#end
 
 // What a ray brings: 255 times its colour, and 0 or UNDECIDED.
 struct Traced {
     color: vec3f,
+    error: vec3f, //~
     verdict: u32,
 }
 
@@ -203,19 +319,41 @@ fn ray_trace(ray: Ray) -> Traced {
         return traced;
     }
 //#end
+//#if certified
+//#if ambient_only
+    // So far away that the byte is 0, whatever is hit.
+    let dark = max(hit.inverse + hit.error, hit.rival) * ray.inverse_length < DARK;
+    let sure = hit.inverse - hit.rival > hit.error;
+    if dark | !sure {
+        traced.verdict = select(UNDECIDED, 0u, dark);
+        return traced;
+    }
+//#else
+    let nothing = (hit.inverse + hit.error <= 0.0) & (hit.rival <= 0.0);
+    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse > LEAST_INVERSE);
+    if nothing | !sure {
+        traced.verdict = select(UNDECIDED, 0u, nothing);
+        return traced;
+    }
+//#end
+    doubt = false;
+//#else
     if !(hit.inverse > 0.0) {
         return traced;
     }
-//#if lit
-    let length = sqrt(ray.w2);
-    var point = locate(ray, hit);
-    var branch = Branch(vec3f(0.0), 0.0, ray.w / length, NOTHING, vec3f(1.0));
-    var t = length / hit.inverse;
-//#if stack
-    var stack: array<Branch, STACK>;
-    var waiting = 0u;
 //#end
+//#if lit
+    var point = locate(ray, hit);
+    var t = ray.w2 * ray.inverse_length / hit.inverse;
+    var t_error = t * (1.01 * hit.error / hit.inverse + LENGTH_ERROR); //~
 //#if branches
+    var branch: Branch;
+    branch.beam = primary_beam(ray);
+    branch.last = NOTHING;
+    branch.weight = vec3f(1.0);
+//#if stack
+    waiting = 0u;
+//#end
     var rays = 1u;
     loop {
         if steps > STEPS_LIMIT {
@@ -223,19 +361,57 @@ fn ray_trace(ray: Ray) -> Traced {
             break;
         }
         steps += 2u;
-//#end
         let total = branch.total + t;
+        let total_error = branch.total_error + t_error + U * total; //~
         let material = materials[objects[point.object].material];
-        traced.color += branch.weight * shade(point, branch.base) * ((1.0 - material.transparency) / total * CAMERA_GAIN);
-//#if branches
+        let lit = shade(point, branch.beam);
+        let share = branch.weight * ((1.0 - material.transparency) / total * CAMERA_GAIN);
+        traced.color += share * lit.color;
+//#if certified
+        traced.error += share * (lit.error * (1.0 + branch.weight_error) + lit.color * (branch.weight_error + 1.01 * total_error / total + 12.0 * U))
+            + 2.0 * U * traced.color;
+        if doubt | (total_error > 0.01 * total) {
+            traced.verdict = UNDECIDED;
+            break;
+        }
+        let short = MAX_PATH - total;
+        let goes_on = any(branch.weight * material.specular > vec3f(0.0)) | (material.transparency > 0.0);
+        if goes_on & !(abs(short) > total_error + 2.0 * U * MAX_PATH) {
+            // Whether the path ends here is not certain.
+            traced.verdict = UNDECIDED;
+            break;
+        }
+//#end
         // The rays that go on from here.
 //#if mirror
-        let along = -dot(point.normal, branch.dir);
-        let mirrored = 2.0 * along * point.normal + branch.dir;
-        var mirror = Branch(point.position, total, mirrored, point.group, branch.weight * material.specular);
+        let along = -dot(point.normal, branch.beam.dir);
+        var mirror: Branch;
+        mirror.beam.base = point.position;
+        mirror.total = total;
+        mirror.last = point.group;
+        mirror.weight = branch.weight * material.specular;
+//#if certified
+        mirror.beam.dir = barrier(2.0 * along * point.normal + branch.beam.dir);
+        mirror.beam.dir_error = 1.01 * branch.beam.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
+        mirror.beam.base_error = point.error;
+        mirror.beam.size = point.size;
+        mirror.total_error = total_error;
+        mirror.weight_error = branch.weight_error + 2.0 * U;
+//#else
+        mirror.beam.dir = 2.0 * along * point.normal + branch.beam.dir;
+//#end
 //#end
 //#if clear
-        var through = Branch(point.position, total, branch.dir, point.group, branch.weight);
+        var through = branch;
+        through.beam.base = point.position;
+        through.total = total;
+        through.last = point.group;
+//#if certified
+        through.beam.base_error = point.error;
+        through.beam.size = point.size;
+        through.total_error = total_error;
+        through.weight_error = branch.weight_error + 5.0 * U;
+//#end
         if material.transparency > 0.0 {
             through.weight *= materials[tile_material(point)].tint * material.transparency;
         } else {
@@ -243,7 +419,10 @@ fn ray_trace(ray: Ray) -> Traced {
         }
 //#end
 //#if stack
-        if any(mirror.weight > vec3f(0.0)) && total <= MAX_PATH {
+        // What goes through is followed at once; the mirror image waits if both go on.
+        let mirrors = any(mirror.weight > vec3f(0.0)) & (total <= MAX_PATH);
+        let passes = any(through.weight > vec3f(0.0)) & (total <= MAX_PATH);
+        if mirrors & passes {
             if waiting == STACK {
                 traced.verdict = UNDECIDED;
                 break;
@@ -251,26 +430,41 @@ fn ray_trace(ray: Ray) -> Traced {
             stack[waiting] = mirror;
             waiting += 1u;
         }
-        if any(through.weight > vec3f(0.0)) && total <= MAX_PATH {
-            if waiting == STACK {
+        branch = mirror;
+        if passes {
+            branch = through;
+        }
+        var met: Met;
+        met.object = NOTHING;
+        var follows = mirrors | passes;
+        loop {
+            if !follows {
+                if waiting == 0u {
+                    break;
+                }
+                waiting -= 1u;
+                branch = stack[waiting];
+            }
+            if rays == MAX_RAYS {
+                // More rays than allowed: the CPU says which pixel it is.
                 traced.verdict = UNDECIDED;
                 break;
             }
-            stack[waiting] = through;
-            waiting += 1u;
-        }
-        var met = Met(0.0, NOTHING);
-        while waiting > 0u && met.object == NOTHING && rays < MAX_RAYS {
-            steps += 2u * LANES;
             rays += 1u;
-            waiting -= 1u;
-            branch = stack[waiting];
-            met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX), LANES);
-        }
-        if met.object == NOTHING && waiting > 0u {
-            // More rays than allowed: the CPU says which pixel it is.
-            traced.verdict = UNDECIDED;
-            break;
+            steps += 2u * LANES;
+//#if certified
+            met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), LANES);
+            doubt |= !met_sure(met);
+            if (met.object != NOTHING) | doubt {
+                break;
+            }
+//#else
+            met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), LANES);
+            if met.object != NOTHING {
+                break;
+            }
+//#end
+            follows = false;
         }
 //#else
 //#if mirror
@@ -278,7 +472,7 @@ fn ray_trace(ray: Ray) -> Traced {
 //#else
         branch = through;
 //#end
-        if total > MAX_PATH || !any(branch.weight > vec3f(0.0)) {
+        if (total > MAX_PATH) | !any(branch.weight > vec3f(0.0)) {
             break;
         }
         if rays == MAX_RAYS {
@@ -286,20 +480,52 @@ fn ray_trace(ray: Ray) -> Traced {
             break;
         }
         rays += 1u;
-        let met = closest_from(branch.base, branch.dir, Range(branch.last, 0u, 0.0, T_MAX), 1u);
+//#if certified
+        let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
+        doubt |= !met_sure(met);
+//#else
+        let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), 1u);
+//#end
+//#end
+//#if certified
+        if doubt {
+            traced.verdict = UNDECIDED;
+            break;
+        }
 //#end
         if met.object == NOTHING {
             break;
         }
         t = met.t;
-        point = locate_met(branch.base, branch.dir, met);
+        t_error = met.error; //~
+        point = locate_met(branch.beam, met);
     }
+//#else
+    let lit = shade(point, primary_beam(ray));
+    let share = CAMERA_GAIN / t;
+    traced.color = share * lit.color;
+    traced.error = share * (lit.error + lit.color * (1.01 * t_error / t + 12.0 * U)); //~
 //#end
     if steps > STEPS_LIMIT {
         traced.verdict = UNDECIDED;
     }
 //#else
-    traced.color = getamb(locate(ray, hit)) * inverse_distance(ray, hit.inverse);
+    let ambient = getamb(locate(ray, hit));
+    let share = CAMERA_GAIN * ray.inverse_length;
+    traced.color = ambient.color * (share * hit.inverse);
+//#if certified
+    traced.error = ambient.color * (share * (1.01 * hit.error + VALUE_ERROR * hit.inverse));
+//#if modulated
+    traced.error += ambient.error * (1.01 * share * hit.inverse);
+//#end
+//#end
+//#end
+//#if certified
+//#if doubtful
+    if doubt {
+        traced.verdict = UNDECIDED;
+    }
+//#end
 //#end
     return traced;
 }
@@ -324,7 +550,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let offset = jitter_hash(pixel, sample);
 //#end
         let one = ray_trace(camera_getdir(pixel, offset));
-        traced.color += one.color / f32(SAMPLES);
+        traced.color += one.color * (1.0 / f32(SAMPLES));
+        traced.error += one.error * (1.01 / f32(SAMPLES)) + 3.0 * U * traced.color; //~
         traced.verdict |= one.verdict;
         if traced.verdict != 0u {
             break;
@@ -336,7 +563,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#else
     let traced = Traced();
 //#end
+//#if certified
+//#if any_object
+    let bytes = camera_setpix(traced.color, traced.error) | traced.verdict;
+//#else
+    let bytes = 0u;
+//#end
+//#else
     let bytes = camera_setpix(traced.color) | traced.verdict;
+//#end
 //#if values
     pixels[place] = vec4u(bitcast<vec3u>(traced.color), bytes);
 //#else

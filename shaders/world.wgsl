@@ -1,5 +1,19 @@
 // What a ray from anywhere meets first. Twin: src/cpu/world.rs.
 
+// A ray from anywhere; positions are from the viewpoint.
+struct Beam {
+    base: vec3f,
+    // Of unit length.
+    dir: vec3f,
+//#if certified
+    // How far base and dir may be from the true ones.
+    base_error: f32,
+    dir_error: f32,
+    // |base.x| + |base.y| + |base.z|
+    size: f32,
+//#end
+}
+
 // What of the scene a ray sees.
 struct Range {
     // The group of surfaces that it left from, which it cannot meet.
@@ -9,12 +23,42 @@ struct Range {
     // Hits count only beyond and before these.
     beyond: f32,
     limit: f32,
+//#if certified
+    beyond_error: f32,
+    limit_error: f32,
+//#end
 }
 
-// A hit: its distance, and the object; NOTHING if there is none.
+// A surface as a ray meets it.
+struct Meeting {
+    // Distance along the ray, where `hit`.
+    t: f32,
+    // For sure, where pixels are certified.
+    hit: bool,
+//#if certified
+    error: f32,
+    // Whether it is met at all; if so, not before `low`.
+    possible: bool,
+    low: f32,
+//#if clear
+    // And not after this.
+    high: f32,
+//#end
+//#end
+}
+
+// The closest hit: its distance, and the object; NOTHING if there is none.
 struct Met {
     t: f32,
     object: u32,
+//#if certified
+    error: f32,
+    low: f32,
+    // Nothing else is met before this.
+    rival: f32,
+    // Its group: of the objects that share it the first in the file is met first, and the others do not count.
+    group: u32,
+//#end
 }
 
 const NOTHING = 0xffffffffu;
@@ -22,17 +66,43 @@ const NOTHING = 0xffffffffu;
 const T_MAX = 1e30f;
 
 // Takes a hit if it is nearer, or as near and first in the file.
-fn met_nearer(closest: ptr<function, Met>, t: f32, object: u32) {
-    if t > 0.0 && (t < (*closest).t || (t == (*closest).t && object < (*closest).object)) {
-        (*closest).t = t;
-        (*closest).object = object;
-    }
+fn met_nearer(closest: ptr<function, Met>, meeting: Meeting, object: u32, group: u32, range: Range) {
+//#if certified
+    let fresh = group != (*closest).group;
+    var hit = meeting.hit & fresh;
+    var possible = meeting.possible & fresh;
+//#if clear
+    let from_start = range.beyond == 0.0;
+    possible &= from_start | (meeting.high - range.beyond > -range.beyond_error);
+    hit &= from_start | (meeting.low - range.beyond > range.beyond_error);
+//#end
+    let takes = hit & (meeting.t < (*closest).t);
+    let low = select(T_MAX, meeting.low, possible);
+    (*closest).rival = min((*closest).rival, select(low, (*closest).low, takes));
+    (*closest).low = select((*closest).low, low, takes);
+    (*closest).error = select((*closest).error, meeting.error, takes);
+    (*closest).group = select((*closest).group, group, takes);
+//#else
+    let nearer = (meeting.t < (*closest).t) | ((meeting.t == (*closest).t) & (object < (*closest).object));
+    let takes = meeting.hit & (meeting.t > range.beyond) & nearer;
+//#end
+    (*closest).t = select((*closest).t, meeting.t, takes);
+    (*closest).object = select((*closest).object, object, takes);
 }
 
-// The first object that the ray from `base` along the unit vector `dir` meets in range. The rounds of its loops count
-// `weight` times: 1 where all lanes of a vector ask together, LANES where they ask on their own.
-fn closest_from(base: vec3f, dir: vec3f, range: Range, weight: u32) -> Met {
-    var closest = Met(range.limit, NOTHING);
+// The first object that the ray meets in range. The rounds of its loops count `weight` times: 1 where all lanes of a vector
+// ask together, LANES where they ask on their own. Certified, whether it is the first for sure is left to `met_sure`.
+fn closest_from(beam: Beam, range: Range, weight: u32) -> Met {
+    var closest: Met;
+    closest.object = NOTHING;
+//#if certified
+    closest.t = T_MAX;
+    closest.low = T_MAX;
+    closest.rival = T_MAX;
+    closest.group = NOTHING;
+//#else
+    closest.t = range.limit;
+//#end
 //#insert unrolled_closest
 //#if world_loop
     steps += weight * WORLD_STEPS;
@@ -42,16 +112,17 @@ fn closest_from(base: vec3f, dir: vec3f, range: Range, weight: u32) -> Met {
 //#end
 //#if world_plane_loop
     for (var i = 0u; i < WORLD_PLANES; i += 1u) {
-        met_nearer(&closest, plane_hits_from(world_planes[i], base, dir, range), world_planes[i].object);
+        met_nearer(&closest, plane_hits_from(world_planes[i], beam, range), world_planes[i].object, world_planes[i].group, range);
     }
 //#end
 //#if world_sphere_loop
     for (var i = WORLD_TREE; i < WORLD_SPHERES; i += 1u) {
-        met_nearer(&closest, sphere_hits_from(world_spheres[i], base, dir, range), world_spheres[i].object);
+        met_nearer(&closest, sphere_hits_from(world_spheres[i], beam, range), world_spheres[i].object, world_spheres[i].group, range);
     }
 //#end
 //#if world_bvh
-    var walk = bvh_begin(base, dir);
+    var walk = bvh_begin(beam.base, beam.dir);
+    bvh_widen(&walk, beam); //~
     loop {
         let node = bvh[walk.index];
         steps += LANES * (2u + node.count);
@@ -59,56 +130,89 @@ fn closest_from(base: vec3f, dir: vec3f, range: Range, weight: u32) -> Met {
             break;
         }
         for (var i = node.first; i < node.first + node.count; i += 1u) {
-            met_nearer(&closest, sphere_hits_from(world_spheres[i], base, dir, range), world_spheres[i].object);
+            met_nearer(&closest, sphere_hits_from(world_spheres[i], beam, range), world_spheres[i].object, world_spheres[i].group, range);
         }
+//#if certified
+        // What is truly nearer than the closest is entered before it.
+        if !bvh_next(&walk, min(closest.t + closest.error, range.limit + range.limit_error)) {
+            break;
+        }
+//#else
         if !bvh_next(&walk, closest.t) {
             break;
         }
+//#end
     }
 //#end
     return closest;
 }
+//#if certified
+
+// Whether nothing else can be nearer than what was met, or nothing at all is met.
+fn met_sure(met: Met) -> bool {
+    return (met.rival - met.t > met.error + 4.0 * U * abs(met.t)) | ((met.object == NOTHING) & (met.rival >= T_MAX));
+}
+//#end
 //#if any_hit
 
-// Whether anything stands in range.
-fn anything_from(base: vec3f, dir: vec3f, range: Range) -> bool {
-    var hit = false;
+// Nothing, perhaps something, or something stands in range: 0, 1, 2.
+fn anything_from(beam: Beam, range: Range) -> u32 {
+    var found = 0u;
 //#insert unrolled_any
 //#if world_loop
     // The rounds are counted where the lights are gone through, as lanes ask for different ones.
     if steps > STEPS_LIMIT {
-        return true;
+        return 2u;
     }
 //#end
 //#if world_plane_loop
-    for (var i = 0u; i < WORLD_PLANES && !hit; i += 1u) {
-        hit = plane_hits_from(world_planes[i], base, dir, range) > 0.0;
+    for (var i = 0u; (i < WORLD_PLANES) & (found != 2u); i += 1u) {
+        found = max(found, stands_before(plane_hits_from(world_planes[i], beam, range), range));
     }
 //#end
 //#if world_sphere_loop
-    for (var i = WORLD_TREE; i < WORLD_SPHERES && !hit; i += 1u) {
-        hit = sphere_hits_from(world_spheres[i], base, dir, range) > 0.0;
+    for (var i = WORLD_TREE; (i < WORLD_SPHERES) & (found != 2u); i += 1u) {
+        found = max(found, stands_before(sphere_hits_from(world_spheres[i], beam, range), range));
     }
 //#end
 //#if world_bvh
-    if hit {
-        return true;
+    if found == 2u {
+        return found;
     }
-    var walk = bvh_begin(base, dir);
+    var walk = bvh_begin(beam.base, beam.dir);
+    bvh_widen(&walk, beam); //~
     loop {
         let node = bvh[walk.index];
         steps += LANES * (2u + node.count);
         if steps > STEPS_LIMIT {
-            return true;
+            return 2u;
         }
-        for (var i = node.first; i < node.first + node.count && !hit; i += 1u) {
-            hit = sphere_hits_from(world_spheres[i], base, dir, range) > 0.0;
+        for (var i = node.first; (i < node.first + node.count) & (found != 2u); i += 1u) {
+            found = max(found, stands_before(sphere_hits_from(world_spheres[i], beam, range), range));
         }
-        if hit || !bvh_next(&walk, range.limit) {
+//#if certified
+        if found == 2u || !bvh_next(&walk, range.limit + range.limit_error) {
             break;
         }
+//#else
+        if found == 2u || !bvh_next(&walk, range.limit) {
+            break;
+        }
+//#end
     }
 //#end
-    return hit;
+    return found;
+}
+
+// Whether a surface stands before the end of the range: 0 no, 1 perhaps, 2 yes.
+fn stands_before(meeting: Meeting, range: Range) -> u32 {
+//#if certified
+    let left = range.limit - meeting.t;
+    let yes = meeting.hit & (left > meeting.error + range.limit_error);
+    let no = !meeting.possible | (meeting.low - range.limit > range.limit_error);
+    return select(select(1u, 0u, no), 2u, yes);
+//#else
+    return select(0u, 2u, meeting.hit & (meeting.t < range.limit));
+//#end
 }
 //#end

@@ -166,14 +166,13 @@ fn a_hundred_thousand_spheres_agree() {
     let mut scene = scene([160, 120], balls.collect());
     scene.materials[0].ambient = DVec3::new(9.0, 4.0, 1.0);
     let (gpu, report) = picture(&scene, &on(Backend::Gpu));
-    assert_eq!(report.refined, 0);
+    assert!(
+        report.refined < 190,
+        "{} pixels are doubtful",
+        report.refined
+    );
     let (cpu, _) = picture(&scene, &on(Backend::Cpu));
-    let differ = gpu
-        .chunks_exact(3)
-        .zip(cpu.chunks_exact(3))
-        .filter(|(g, c)| g != c)
-        .count();
-    assert!(differ <= 9, "{differ} of 19200 pixels differ");
+    assert!(gpu == cpu, "the pictures differ");
     let lit = gpu
         .chunks_exact(3)
         .filter(|p| p.iter().any(|c| *c > 0))

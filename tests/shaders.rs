@@ -12,8 +12,7 @@ use plumb::cpu::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::gpu::compose::compose;
 use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
-use plumb::prepare::{Prepared, View};
-use plumb::render::{Settings, Spread};
+use plumb::render::{Precision, Settings, Spread};
 use plumb::scene::{
     Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
     TextureMode,
@@ -30,6 +29,8 @@ enum Ingredient {
     WideSphere,
     SmallPsphere(u32),
     WidePsphere(u32),
+    Coplanar,
+    Fast,
     ManyPlanes,
     ManySpheres,
     Values,
@@ -55,6 +56,8 @@ fn ingredients() -> Vec<Ingredient> {
         Tiled,
         SmallSphere,
         WideSphere,
+        Coplanar,
+        Fast,
         ManyPlanes,
         ManySpheres,
         Values,
@@ -139,6 +142,10 @@ fn objects(ingredient: Ingredient) -> Vec<Object> {
             })
             .collect(),
         Rectangle => vec![rectangle(Surface::Plain)],
+        Coplanar => {
+            let wall = plane(DVec3::Z, DVec3::new(0.0, 0.0, -4.0), Surface::Plain);
+            vec![rectangle(Surface::Plain), wall]
+        }
         TiledAlong => {
             vec![floor(Surface::Tiled {
                 dimension: DVec2::ONE,
@@ -151,7 +158,7 @@ fn objects(ingredient: Ingredient) -> Vec<Object> {
         Glass => vec![of_material(2, small(Surface::Plain))],
         Glint => vec![of_material(3, small(Surface::Plain))],
         LampInFloor => vec![floor(Surface::Plain)],
-        Values | Lamp | Spotlight | Samples | CourseSamples => vec![],
+        Values | Fast | Lamp | Spotlight | Samples | CourseSamples => vec![],
     }
 }
 
@@ -261,9 +268,14 @@ fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
         } else {
             Spread::Hash
         },
+        precision: if has(Fast) {
+            Precision::Fast
+        } else {
+            Precision::Certified
+        },
         ..Settings::default()
     };
-    let packed = Packed::new(&Prepared::new(&scene, View::new(0.0, settings.samples)));
+    let packed = Packed::new(&scene, &settings);
     let features = FeatureSet::new(&packed, &settings, 8);
     (compose(&packed, &features), features)
 }
@@ -294,7 +306,7 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     let (wgsl, features) = composed(&all);
     assert_valid(&wgsl, "all");
     // A scene that has everything but many objects has them as literals, and one without lights has other shapes.
-    let few = |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres);
+    let few = |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres | Fast | Values);
     let dark =
         |i: &Ingredient| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint);
     let without_many: Vec<_> = all.iter().copied().filter(few).collect();
@@ -329,7 +341,10 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
         "world_loop",
         "world_bvh",
         "course",
-        "small_sphere_point",
+        "sphere_point",
+        "sphere_beyond",
+        "groups",
+        "certified",
         "level",
     ] {
         assert!(named.contains(name) || name == "any_hit", "{name}");
@@ -339,16 +354,19 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
 #[test]
 fn every_scene_of_ours_is_valid() {
     for path in common::good_scenes() {
-        for (values, samples) in [(false, 1), (true, 16)] {
+        for (values, samples, precision) in [
+            (false, 1, Precision::Certified),
+            (false, 16, Precision::Certified),
+            (false, 1, Precision::Fast),
+            (true, 16, Precision::Fast),
+        ] {
             let settings = Settings {
                 values,
                 samples,
+                precision,
                 ..Settings::default()
             };
-            let packed = Packed::new(&Prepared::new(
-                &common::read(&path),
-                View::new(0.0, samples),
-            ));
+            let packed = Packed::new(&common::read(&path), &settings);
             let features = FeatureSet::new(&packed, &settings, 8);
             assert_valid(&compose(&packed, &features), &path.display().to_string());
         }
@@ -369,20 +387,30 @@ fn what_is_not_used_is_not_there() {
                     | TiledAlong
                     | Pplane(_)
                     | ManyPlanes
+                    | Coplanar
                     | Mirror
                     | LampInFloor
             )
         }),
-        ("rectangle_hits", &|i| matches!(i, Rectangle | Texplane(_))),
+        ("rectangle_hits", &|i| {
+            matches!(i, Rectangle | Texplane(_) | Coplanar)
+        }),
         ("plane.front.x *", &|i| i == PlaneAcrossTheScreen),
-        ("small_sphere_hits", &|i| {
+        ("sphere_hits(", &|i| {
             matches!(
                 i,
-                SmallSphere | SmallPsphere(_) | ManySpheres | Glass | Glint
+                SmallSphere
+                    | WideSphere
+                    | SmallPsphere(_)
+                    | WidePsphere(_)
+                    | ManySpheres
+                    | Glass
+                    | Glint
             )
         }),
-        ("wide_sphere_hits", &|i| {
-            matches!(i, WideSphere | WidePsphere(_))
+        ("(group == 0u)", &|i| i == Coplanar),
+        ("rival", &|i| {
+            !matches!(i, Values | Fast) && !objects(i).is_empty()
         }),
         ("bvh", &|i| i == ManySpheres),
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
@@ -407,9 +435,9 @@ fn what_is_not_used_is_not_there() {
         ("fn shadow", &lit),
         ("diffuse", &lit),
         ("array<Branch", &|_| false),
-        ("mirrored", &|i| matches!(i, Mirror | Glint)),
+        ("mirror.beam.dir =", &|i| matches!(i, Mirror | Glint)),
         ("through.weight", &|i| i == Glass),
-        ("pow(", &|i| i == Glint),
+        ("power(", &|i| i == Glint),
         ("jitter_hash", &|_| false),
         ("offsets[", &|_| false),
     ];
@@ -491,7 +519,7 @@ mod layout {
             .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
             .collect();
         let dark = assert_valid(&composed(&dark).0, "all without lights");
-        same_layout!(module, "Job", pack::Job, first, size);
+        same_layout!(module, "Job", pack::Job, first, size, zero, unused);
         same_layout!(dark, "Object", pack::Object, ambient, kind);
         same_layout!(
             module,
@@ -502,7 +530,18 @@ mod layout {
             group,
             place
         );
-        same_layout!(dark, "Plane", pack::Plane, inverse, object, front, unused);
+        same_layout!(
+            dark,
+            "Plane",
+            pack::Plane,
+            inverse,
+            object,
+            front,
+            group,
+            inverse_error,
+            front_error,
+            unused
+        );
         same_layout!(
             dark,
             "Rectangle",
@@ -510,34 +549,42 @@ mod layout {
             inverse,
             object,
             front,
-            unused,
+            group,
             side_0,
-            length_0,
+            inverse_error,
             side_1,
-            length_1
+            front_error,
+            side_2,
+            unused_0,
+            side_3,
+            unused_1,
+            side_errors
         );
         same_layout!(
             dark,
-            "SmallSphere",
-            pack::SmallSphere,
-            toward,
-            rho2,
+            "Sphere",
+            pack::Sphere,
+            along,
             gain,
-            distance,
-            offset,
-            anchor,
+            square,
             object,
+            affine,
+            along_error,
+            anchor,
+            disc_error,
             unused
         );
         same_layout!(
             dark,
-            "WideSphere",
-            pack::WideSphere,
-            toward,
-            kappa2,
-            gain,
-            distance,
-            object,
+            "SphereHit",
+            pack::SphereHit,
+            form_x,
+            inverse_radius,
+            form_y,
+            form_error,
+            form_z,
+            center_size,
+            center,
             unused
         );
         same_layout!(module, "BvhNode", pack::BvhNode, min, first, max, count);
@@ -552,18 +599,19 @@ mod layout {
             altmaterial,
             altindex,
             parity,
-            unused
+            spread,
+            errors
         );
         same_layout!(
             module,
             "Pplane",
             pack::ProceduralPlane,
             per_unit,
-            unused_0,
+            index_error,
             fraction,
-            unused_1,
+            from_point_error,
             parity,
-            unused_2,
+            unused,
             from_point
         );
         same_layout!(
@@ -576,7 +624,9 @@ mod layout {
             origin_1,
             size,
             first,
-            repeats
+            repeats,
+            spread,
+            errors
         );
         same_layout!(
             module,
@@ -587,9 +637,9 @@ mod layout {
             diffuse,
             shininess,
             specular,
-            unused_0,
+            power,
             tint,
-            unused_1
+            unused
         );
         same_layout!(
             module,
@@ -598,9 +648,9 @@ mod layout {
             location,
             cosine,
             emissivity,
-            unused_0,
+            size,
             axis,
-            unused_1
+            unused
         );
         same_layout!(
             module,
@@ -618,7 +668,10 @@ mod layout {
             origin_1,
             lengths,
             level,
-            bounded
+            bounded,
+            highest,
+            sides_error,
+            unused
         );
         same_layout!(
             module,
@@ -629,7 +682,11 @@ mod layout {
             group,
             object,
             level,
-            seen
+            size,
+            inverse_radius,
+            unused_0,
+            unused_1,
+            unused_2
         );
     }
 

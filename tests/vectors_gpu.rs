@@ -7,7 +7,7 @@ use plumb::gpu::compose::compose;
 use plumb::gpu::device::{self, Gpu};
 use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
-use plumb::prepare::{self, Prepared};
+use plumb::prepare;
 use plumb::render::Settings;
 use plumb::scene::{Camera, Material, Object, Scene, Shape, Surface};
 use wgpu::util::DeviceExt as _;
@@ -432,7 +432,7 @@ mod pixel_to_ray {
 
     /// The shader that plumb composes for the scene, and a second entry point that calls its camera.
     fn composed(scene: &Scene) -> String {
-        let packed = Packed::new(&Prepared::new(scene, 0.0));
+        let packed = Packed::new(scene, &Settings::default());
         let mut wgsl = compose(&packed, &FeatureSet::new(&packed, &Settings::default(), 8));
         wgsl += "
 @group(0) @binding(100) var<storage, read> test_pixels: array<vec2i>;

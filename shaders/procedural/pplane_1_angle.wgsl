@@ -1,5 +1,8 @@
 // pplane shader 1: colours around the plane's point, by the angle: 6·(1 + cos(2θ + φ)).
-fn pplane_1_angle(at: PlanePoint) -> vec3f {
+fn pplane_1_angle(at: PlanePoint) -> Shade {
     let v = pplane_from_point(at);
-    return 6.0 * color_wheel(v.x, v.y);
+    var shade = color_wheel(v.x, v.y, v.z);
+    shade.color *= 6.0;
+    shade.error *= 6.0; //~
+    return shade;
 }

@@ -1,16 +1,18 @@
 //! The WGSL for exactly one scene, put together from the files of `shaders/`.
 //!
-//! A line `//#if name` … `//#else` … `//#end` keeps its lines where the feature holds; `//#insert name` is replaced by what
+//! A line `//#if name` … `//#else` … `//#end` keeps its lines where the feature holds, and a line that ends in `//~` stays
+//! only where pixels are certified; `//#insert name` is replaced by what
 //! is written here: the camera's numbers, the objects of a small scene as literals, the procedural shaders used. Helpers
 //! that only some shaders call (`color_wheel`, `pplane_odd`, …) come in when a text that does come in names them.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use super::bounds;
 use super::features::FeatureSet;
 use super::literal::{
-    literal, plane_literal, rectangle_literal, small_sphere_literal, vector, wide_sphere_literal,
-    world_plane_literal, world_sphere_literal,
+    literal, plane_literal, rectangle_literal, sphere_literal, vector, world_plane_literal,
+    world_sphere_literal,
 };
 use super::pack::{Kind, Packed};
 use crate::cpu::procedural::{PPLANE_WGSL, PSPHERE_WGSL};
@@ -19,7 +21,7 @@ use crate::cpu::procedural::{PPLANE_WGSL, PSPHERE_WGSL};
 pub const WORKGROUP: u32 = 16;
 
 /// Most rays that wait while another is followed; a pixel that needs more is handed to the CPU.
-const STACK: usize = 24;
+const STACK: usize = 8;
 
 const BINDINGS: &str = include_str!("../../shaders/bindings.wgsl");
 const CAMERA: &str = include_str!("../../shaders/camera.wgsl");
@@ -43,6 +45,10 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
         ("pplane_odd", used("pplane_odd(")),
         ("pplane_from_point", used("pplane_from_point(")),
         ("odd", names.contains("tiled") || used("pplane_odd(")),
+        (
+            "whole",
+            names.contains("tiled") || names.contains("textured") || used("pplane_odd("),
+        ),
     ];
     names.extend(
         helpers
@@ -59,10 +65,7 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
             names.contains("samples") && !names.contains("course"),
         ),
         (PLANE, features.planes || features.rectangles || lit),
-        (
-            SPHERE,
-            features.small_spheres || features.wide_spheres || names.contains("lit_sphere"),
-        ),
+        (SPHERE, features.spheres || names.contains("lit_sphere")),
         (BVH, features.bvh),
         (SURFACE, features.any_object()),
         (WORLD, lit),
@@ -72,15 +75,12 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
     let insert = |name: &str| match name {
         "procedural" => procedural.clone(),
         "procedural_cases" => procedural_cases(features),
-        "from_center_cases" => from_center_cases(features),
         "unrolled" => unrolled(packed, features),
-        "unrolled_closest" => unrolled_world(packed, features, |hits| {
-            format!("met_nearer(&closest, {hits});")
+        "unrolled_closest" => unrolled_world(packed, features, |hits, object, group| {
+            format!("met_nearer(&closest, {hits}, {object}u, {group}u, range);")
         }),
-        "unrolled_any" => unrolled_world(packed, features, |hits| {
-            // The object's number, which comes last, is not asked for.
-            let call = hits.rsplit_once(',').map_or(hits, |(call, _)| call);
-            format!("hit = hit || {call} > 0.0;")
+        "unrolled_any" => unrolled_world(packed, features, |hits, _, _| {
+            format!("found = max(found, stands_before({hits}, range));")
         }),
         _ => unreachable!("shaders/ asks for the insertion `{name}`"),
     };
@@ -110,6 +110,9 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         lines.push(format!("const CAMERA_GAIN = {};", literal(camera.gain)));
     }
     let names = features.names();
+    if features.any_object() {
+        lines.extend(error_constants(packed, &names));
+    }
     let mut count = |name: &str, constant: &str, value: usize| {
         if names.contains(name) {
             lines.push(format!("const {constant} = {value}u;"));
@@ -117,16 +120,8 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     };
     count("plane_loop", "PLANES", packed.planes.len());
     count("rectangle_loop", "RECTANGLES", packed.rectangles.len());
-    count(
-        "small_sphere_loop",
-        "SMALL_SPHERES",
-        packed.small_spheres.len(),
-    );
-    count(
-        "wide_sphere_loop",
-        "WIDE_SPHERES",
-        packed.wide_spheres.len(),
-    );
+    count("sphere_loop", "SPHERES", packed.spheres.len());
+    count("sphere_loop", "SPHERE_TREE", packed.in_tree);
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
     // The last round of each of up to four loops only finds its end.
@@ -160,7 +155,6 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         count("stack", "STACK", STACK);
         if names.contains("lit") {
             lines.push(format!("const UNIT = {};", literal(camera.unit)));
-            lines.push(format!("const HIGHEST = {};", literal(lit.highest)));
         }
     }
     if let (Some(lit), true) = (features.lit, names.contains("branches")) {
@@ -171,6 +165,39 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         lines.push(format!("const {} = {}u;", kind.name(), kind.code()));
     }
     lines.join("\n") + "\n"
+}
+
+/// What the error bounds in the shader refer to by name.
+fn error_constants(packed: &Packed, names: &BTreeSet<&str>) -> Vec<String> {
+    let line = |name: &str, value: f64| format!("const {name} = {};", literal(bounds::up(value)));
+    if !names.contains("certified") {
+        let tiny = bounds::NAMED
+            .iter()
+            .filter(|(name, _)| *name == "TINY_SQUARE");
+        return tiny.map(|(name, value)| line(name, *value)).collect();
+    }
+    let mut lines: Vec<String> = bounds::NAMED
+        .iter()
+        .map(|(name, value)| line(name, *value))
+        .collect();
+    let camera = &packed.camera;
+    let spread = f64::from(camera.spread);
+    lines.push(line("W_ERROR", f64::from(camera.w_error)));
+    lines.push(line(
+        "LENGTH_ERROR",
+        bounds::LENGTH_ROUNDINGS * spread * bounds::U,
+    ));
+    lines.push(line(
+        "DIR_ERROR",
+        bounds::DIR_ROUNDINGS * spread * bounds::U,
+    ));
+    lines.push(line(
+        "VALUE_ERROR",
+        bounds::VALUE_ROUNDINGS * spread * bounds::U,
+    ));
+    lines.push(format!("const DARK = {};", literal(packed.dark)));
+    lines.push(line("BVH_SIZE", f64::from(packed.tree_size)));
+    lines
 }
 
 /// lavapipe ends every loop, without a word, once the loops of an invocation have gone round 65,535 times together; and
@@ -217,12 +244,17 @@ fn procedural_cases(features: &FeatureSet) -> String {
         let (point, family, shader) = match *kind {
             Kind::Plain | Kind::Tiled | Kind::Textured => continue,
             Kind::Pplane(shader) => (
-                "PlanePoint(point.position, ambient, pplanes[record])",
+                "PlanePoint(point, shade.color, pplanes[record])",
                 PPLANE_WGSL,
                 shader,
             ),
-            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => (
-                "SpherePoint(point.from_center, ambient)",
+            Kind::Psphere(shader) if features.certified => (
+                "SpherePoint(point.from_center, point.from_center_error, shade.color)",
+                PSPHERE_WGSL,
+                shader,
+            ),
+            Kind::Psphere(shader) => (
+                "SpherePoint(point.from_center, 0.0, shade.color)",
                 PSPHERE_WGSL,
                 shader,
             ),
@@ -238,95 +270,53 @@ fn procedural_cases(features: &FeatureSet) -> String {
     text
 }
 
-/// How `locate` finds H − C on a sphere, by what a record says of it.
-fn from_center_cases(features: &FeatureSet) -> String {
-    if features.lit.is_some() {
-        // The form for small spheres is the more accurate one; `complete` has filled in the other.
-        return if features.small_spheres {
-            "    if (object.place & SPHERE_BIT) != 0u {
-        let seen = world_spheres[object.place & ~SPHERE_BIT].seen;
-        if seen != 0u {
-            point.from_center = small_sphere_from_center(small_spheres[seen - 1u], ray, hit.inverse);
-        }
-    }
-"
-            .into()
-        } else {
-            String::new()
-        };
-    }
-    let mut text = "    switch object.kind & 255u {\n".to_owned();
-    for kind in &features.kinds {
-        let size = match kind {
-            Kind::SmallPsphere(_) => "small",
-            Kind::WidePsphere(_) => "wide",
-            _ => continue,
-        };
-        let call = format!(
-            "{size}_sphere_from_center({size}_spheres[object.kind >> 8u], ray, hit.inverse)"
-        );
-        writeln!(
-            text,
-            "        case {}: {{ point.from_center = {call}; }}",
-            kind.name()
-        )
-        .unwrap_or_default();
-    }
-    text + "        default: {}\n    }\n"
-}
-
-/// The objects of a small scene as literals, for primary rays: no load, no loop.
+/// The objects of a small scene as literals, for primary rays: no load, no loop. Rectangles come first: of objects that
+/// share a surface a plane without end is the last that counts.
 fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     let mut text = String::new();
     if !features.unrolled {
         return text;
     }
-    let mut line = |hits: &str, record: String, object: u32| {
+    let mut line = |hits: &str, record: String, object: u32, index: usize, group: u32| {
         writeln!(
             text,
-            "    nearer(&closest, {hits}({record}, ray), {object}u);"
+            "    nearer(&closest, {hits}({record}, ray), {object}u, {index}u, {group}u);"
         )
         .unwrap_or_default();
     };
-    for p in &packed.planes {
-        line("plane_hits", plane_literal(p), p.object);
+    for (i, r) in packed.rectangles.iter().enumerate() {
+        line("rectangle_hits", rectangle_literal(r), r.object, i, r.group);
     }
-    for r in &packed.rectangles {
-        line("rectangle_hits", rectangle_literal(r), r.object);
+    for (i, p) in packed.planes.iter().enumerate() {
+        line("plane_hits", plane_literal(p), p.object, i, p.group);
     }
-    for s in &packed.small_spheres {
-        line("small_sphere_hits", small_sphere_literal(s), s.object);
-    }
-    for s in &packed.wide_spheres {
-        line("wide_sphere_hits", wide_sphere_literal(s), s.object);
+    for (i, s) in packed.spheres.iter().enumerate() {
+        line("sphere_hits", sphere_literal(s), s.object, i, 0);
     }
     text
 }
 
-/// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function.
+/// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function, with
+/// the object and its group.
 fn unrolled_world(
     packed: &Packed,
     features: &FeatureSet,
-    statement: impl Fn(&str) -> String,
+    statement: impl Fn(&str, u32, u32) -> String,
 ) -> String {
     let mut text = String::new();
     let (true, Some(lit)) = (features.unrolled, &packed.lit) else {
         return text;
     };
-    let mut line = |call: String| writeln!(text, "    {}", statement(&call)).unwrap_or_default();
+    let mut line = |call: String, object: u32, group: u32| {
+        writeln!(text, "    {}", statement(&call, object, group)).unwrap_or_default();
+    };
     for p in &lit.planes {
-        line(format!(
-            "plane_hits_from({}, base, dir, range), {}u",
-            world_plane_literal(p),
-            p.object
-        ));
+        let call = format!("plane_hits_from({}, beam, range)", world_plane_literal(p));
+        line(call, p.object, p.group);
     }
     for s in &lit.spheres {
-        line(format!(
-            "sphere_hits_from({}, base, dir, range), {}u",
-            world_sphere_literal(s),
-            s.object
-        ));
+        let call = format!("sphere_hits_from({}, beam, range)", world_sphere_literal(s));
+        line(call, s.object, s.group);
     }
     text
 }
@@ -343,8 +333,11 @@ fn preprocess(
         let all = keep.iter().all(|k| *k);
         match line.trim_start().strip_prefix("//#") {
             None if all => {
-                text.push_str(line);
-                text.push('\n');
+                let bound = line.strip_suffix("//~");
+                if bound.is_none() || names.contains("certified") {
+                    text.push_str(bound.unwrap_or(line).trim_end());
+                    text.push('\n');
+                }
             }
             None => {}
             Some(directive) => match directive.split_once(' ').unwrap_or((directive, "")) {
@@ -357,7 +350,7 @@ fn preprocess(
                 ("end", _) => {
                     keep.pop();
                 }
-                ("insert", name) if all => text.push_str(&insert(name)),
+                ("insert", name) if all => preprocess(&insert(name), names, insert, text),
                 ("insert", _) => {}
                 (other, _) => unreachable!("shaders/ has the line `//#{other}`"),
             },

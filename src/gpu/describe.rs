@@ -6,15 +6,11 @@ use super::compose::compose;
 use super::device::SOFTWARE_LANES;
 use super::features::FeatureSet;
 use super::pack::Packed;
-use crate::prepare::{Prepared, View};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
 fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
-    let packed = Packed::new(&Prepared::new(
-        scene,
-        View::new(settings.screen_tolerance, settings.samples),
-    ));
+    let packed = Packed::new(scene, settings);
     let features = FeatureSet::new(&packed, settings, SOFTWARE_LANES);
     (packed, features)
 }
@@ -63,8 +59,8 @@ pub fn buffers(scene: &Scene, settings: &Settings) -> String {
     }
     list(&mut text, "objects", &packed.objects);
     list(&mut text, "planes", &packed.planes);
-    list(&mut text, "small_spheres", &packed.small_spheres);
-    list(&mut text, "wide_spheres", &packed.wide_spheres);
+    list(&mut text, "spheres", &packed.spheres);
+    list(&mut text, "sphere_points", &packed.sphere_points);
     list(&mut text, "tiled_planes", &packed.tiled_planes);
     list(&mut text, "pplanes", &packed.pplanes);
     list(&mut text, "rectangles", &packed.rectangles);

@@ -15,10 +15,14 @@ pub struct FeatureSet {
     pub rectangles: bool,
     /// Some plane crosses the screen, so that the z > τ rule decides pixels.
     pub front: bool,
-    /// There are spheres seen small.
-    pub small_spheres: bool,
-    /// There are other spheres.
-    pub wide_spheres: bool,
+    /// There are spheres that primary rays can hit, other than through the tree of a lit scene.
+    pub spheres: bool,
+    /// Some of them are outside the tree.
+    pub loose_spheres: bool,
+    /// Some objects share a surface.
+    pub groups: bool,
+    /// Pixels come with a verdict.
+    pub certified: bool,
     /// Spheres are many and have a tree.
     pub bvh: bool,
     /// Objects stand in the text of the shader, not in buffers.
@@ -27,8 +31,6 @@ pub struct FeatureSet {
     pub kinds: BTreeSet<Kind>,
     /// The unquantised values are wanted too.
     pub values: bool,
-    /// Pixels come with a verdict, sure or doubtful.
-    pub certified: bool,
     /// Rays a pixel.
     pub samples: u32,
     /// The samples are spread as the course's program did.
@@ -50,7 +52,7 @@ pub struct LitFeatures {
     pub glint: bool,
     /// Some light is a spotlight.
     pub cone: bool,
-    /// Some light lies in a plane.
+    /// Some light lies in a plane or on a sphere.
     pub level: bool,
     /// There are planes, of either kind.
     pub planes: bool,
@@ -87,14 +89,16 @@ impl FeatureSet {
         Self {
             planes: !packed.planes.is_empty(),
             rectangles: !packed.rectangles.is_empty(),
-            front: fronts.into_iter().any(|front| front != [0.0; 3]),
-            small_spheres: !packed.small_spheres.is_empty(),
-            wide_spheres: !packed.wide_spheres.is_empty(),
+            front: fronts.into_iter().any(|front| front != [0.0, 0.0, 1.0]),
+            spheres: !packed.spheres.is_empty(),
+            loose_spheres: packed.in_tree < packed.spheres.len(),
+            groups: packed.planes.iter().any(|p| p.group != 0)
+                || packed.rectangles.iter().any(|r| r.group != 0),
+            certified: settings.precision == Precision::Certified && !settings.values,
             bvh: tree,
             unrolled: !tree && (1..=UNROLLED_OBJECTS).contains(&objects),
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
-            certified: settings.precision == Precision::Certified,
             samples: settings.samples,
             course: settings.samples > 1 && settings.jitter == Spread::Course,
             lanes,
@@ -103,7 +107,8 @@ impl FeatureSet {
                 clear: lit.clear,
                 glint: lit.glint,
                 cone: lit.lights.iter().any(|light| light.cosine >= -1.0),
-                level: lit.planes.iter().any(|plane| plane.level != 0),
+                level: lit.planes.iter().any(|plane| plane.level != 0)
+                    || lit.spheres.iter().any(|sphere| sphere.level != 0),
                 planes: !lit.planes.is_empty(),
                 rectangles: lit.planes.iter().any(|plane| plane.bounded != 0),
                 spheres: !lit.spheres.is_empty(),
@@ -116,7 +121,7 @@ impl FeatureSet {
 
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
-        self.planes || self.rectangles || self.small_spheres || self.wide_spheres || self.bvh
+        self.planes || self.rectangles || self.spheres || self.bvh
     }
 
     /// Numbers of the `pplane` shaders used.
@@ -133,9 +138,7 @@ impl FeatureSet {
     /// Numbers of the `psphere` shaders used.
     pub fn pspheres(&self) -> BTreeSet<u32> {
         self.numbers(|kind| match kind {
-            Kind::SmallPsphere(shader) | Kind::WidePsphere(shader) | Kind::LitPsphere(shader) => {
-                Some(shader)
-            }
+            Kind::Psphere(shader) => Some(shader),
             _ => None,
         })
     }
@@ -146,9 +149,6 @@ impl FeatureSet {
 
     /// The names that hold, for `//#if`.
     pub fn names(&self) -> BTreeSet<&'static str> {
-        let has = |test: fn(&Kind) -> bool| self.kinds.iter().any(test);
-        let small_point = has(|k| matches!(k, Kind::SmallPsphere(_)));
-        let wide_point = has(|k| matches!(k, Kind::WidePsphere(_)));
         let tiled = self.kinds.contains(&Kind::Tiled);
         let textured = self.kinds.contains(&Kind::Textured);
         let pplane = !self.pplanes().is_empty();
@@ -157,14 +157,10 @@ impl FeatureSet {
         // Without anything to hit there is nothing to light.
         let is_lit = any && self.lit.is_some();
         let lit = self.lit.filter(|_| any).unwrap_or_default();
-        let lit_seen = is_lit && self.small_spheres;
+        let certified = any && self.certified;
+        let sphere_point = self.spheres && (psphere || is_lit);
         let loops = !self.unrolled;
-        let kinds_of_shape = [
-            self.planes,
-            self.rectangles,
-            self.small_spheres,
-            self.wide_spheres,
-        ];
+        let kinds_of_shape = [self.planes, self.rectangles, self.spheres];
         [
             ("any_object", any),
             ("ambient_only", any && !is_lit),
@@ -173,25 +169,26 @@ impl FeatureSet {
             ("front", self.front),
             ("plane_loop", self.planes && loops),
             ("rectangle_loop", self.rectangles && loops),
-            ("small_sphere", self.small_spheres),
-            ("small_sphere_tree", self.bvh && !is_lit),
+            ("sphere", self.spheres),
+            ("sphere_tree", self.bvh && !is_lit),
+            ("sphere_loop", self.loose_spheres && loops),
+            ("sphere_buffer", self.spheres && (loops || sphere_point)),
+            ("sphere_point", sphere_point),
+            // Spheres hit by rays from elsewhere, or through the tree.
             (
-                "small_sphere_loop",
-                self.small_spheres && loops && !self.bvh,
+                "sphere_beyond",
+                lit.spheres && (lit.mirror || lit.clear || self.bvh),
             ),
-            (
-                "small_sphere_buffer",
-                self.small_spheres && (loops || small_point || lit_seen),
-            ),
-            ("small_sphere_point", small_point || lit_seen),
-            ("wide_sphere", self.wide_spheres),
-            ("wide_sphere_loop", self.wide_spheres && loops),
-            (
-                "wide_sphere_buffer",
-                self.wide_spheres && (loops || wide_point),
-            ),
-            ("wide_sphere_point", wide_point),
             ("bvh", self.bvh),
+            ("widened", self.bvh && is_lit && certified),
+            ("certified", certified),
+            ("barrier", (certified && (is_lit || sphere_point)) || is_lit),
+            ("groups", self.groups && certified),
+            ("index", certified && (tiled || textured || pplane)),
+            (
+                "doubtful",
+                certified && (is_lit || tiled || textured || pplane || psphere),
+            ),
             // Where objects do not come in the order of the file.
             (
                 "mixed",
@@ -211,7 +208,6 @@ impl FeatureSet {
             ("position", is_lit || tiled || textured || pplane),
             ("from_center", psphere || lit.spheres),
             ("values", self.values),
-            ("certified", self.certified),
             ("samples", any && self.samples > 1),
             ("course", any && self.course),
             ("counted", any && (is_lit || self.bvh || self.samples > 1)),
@@ -219,7 +215,10 @@ impl FeatureSet {
             ("lit_sphere", lit.spheres),
             ("lit_plane", lit.planes),
             ("world_planes", lit.planes),
-            ("world_spheres", lit.spheres),
+            (
+                "world_spheres",
+                lit.spheres && (loops || lit.mirror || lit.clear || self.bvh),
+            ),
             ("mirror", lit.mirror),
             ("clear", lit.clear),
             ("branches", lit.mirror || lit.clear),

@@ -1,32 +1,39 @@
 //! Packed records as WGSL literals, for the scenes whose objects stand in the text of the shader.
 
-use super::pack::{Plane, Rectangle, SmallSphere, WideSphere, WorldPlane, WorldSphere};
+use super::pack::{Plane, Rectangle, Sphere, WorldPlane, WorldSphere};
 
 pub(super) fn plane_literal(p: &Plane) -> String {
     format!(
-        "Plane({}, {}u, {}, 0u)",
+        "Plane({}, {}u, {}, {}u, {}, {}, vec2f())",
         vector(&p.inverse),
         p.object,
-        vector(&p.front)
+        vector(&p.front),
+        p.group,
+        literal(p.inverse_error),
+        literal(p.front_error)
     )
 }
 
 pub(super) fn rectangle_literal(r: &Rectangle) -> String {
     format!(
-        "Rectangle({}, {}u, {}, 0u, {}, {}, {}, {})",
+        "Rectangle({}, {}u, {}, {}u, {}, {}, {}, {}, {}, 0u, {}, 0u, {})",
         vector(&r.inverse),
         r.object,
         vector(&r.front),
+        r.group,
         vector(&r.side_0),
-        literal(r.length_0),
+        literal(r.inverse_error),
         vector(&r.side_1),
-        literal(r.length_1)
+        literal(r.front_error),
+        vector(&r.side_2),
+        vector(&r.side_3),
+        vector(&r.side_errors)
     )
 }
 
 pub(super) fn world_plane_literal(p: &WorldPlane) -> String {
     format!(
-        "WorldPlane({}, {}, {}, {}u, {}, {}u, {}, {}, {}, {}, {}, {}u, {}u)",
+        "WorldPlane({}, {}, {}, {}u, {}, {}u, {}, {}, {}, {}, {}, {}u, {}u, {}, {}, vec2f())",
         vector(&p.normal),
         literal(p.offset),
         vector(&p.keep),
@@ -39,44 +46,37 @@ pub(super) fn world_plane_literal(p: &WorldPlane) -> String {
         literal(p.origin_1),
         vector(&p.lengths),
         p.level,
-        p.bounded
+        p.bounded,
+        literal(p.highest),
+        literal(p.sides_error)
     )
 }
 
 pub(super) fn world_sphere_literal(s: &WorldSphere) -> String {
     format!(
-        "WorldSphere({}, {}, {}u, {}u, {}u, {}u)",
+        "WorldSphere({}, {}, {}u, {}u, {}u, {}, {}, 0u, 0u, 0u)",
         vector(&s.center),
         literal(s.radius),
         s.group,
         s.object,
         s.level,
-        s.seen
+        literal(s.size),
+        literal(s.inverse_radius)
     )
 }
 
-pub(super) fn small_sphere_literal(s: &SmallSphere) -> String {
+pub(super) fn sphere_literal(s: &Sphere) -> String {
     format!(
-        "SmallSphere({}, {}, {}, {}, {}, vec2i({}, {}), {}u, 0u)",
-        vector(&s.toward),
-        literal(s.rho2),
+        "Sphere({}, {}, {}, {}u, {}, {}, vec2i({}, {}), {}, 0u)",
+        vector(&s.along),
         literal(s.gain),
-        literal(s.distance),
-        vector(&s.offset),
+        vector(&s.square),
+        s.object,
+        vector(&s.affine),
+        literal(s.along_error),
         s.anchor[0],
         s.anchor[1],
-        s.object
-    )
-}
-
-pub(super) fn wide_sphere_literal(s: &WideSphere) -> String {
-    format!(
-        "WideSphere({}, {}, {}, {}, {}u, 0u)",
-        vector(&s.toward),
-        literal(s.kappa2),
-        literal(s.gain),
-        literal(s.distance),
-        s.object
+        literal(s.disc_error)
     )
 }
 

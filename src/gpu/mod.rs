@@ -5,6 +5,7 @@
 //! binds, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`] tries out a device before it is trusted. [`describe`] prints each stage.
 
 pub mod bands;
+pub mod bounds;
 pub mod compose;
 pub mod describe;
 pub mod device;

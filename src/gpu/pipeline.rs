@@ -121,17 +121,12 @@ fn upload(
         "finite planes",
         bytes(&packed.rectangles),
     )?;
+    add("sphere_buffer", 5, "spheres", bytes(&packed.spheres))?;
     add(
-        "small_sphere_buffer",
-        5,
-        "spheres",
-        bytes(&packed.small_spheres),
-    )?;
-    add(
-        "wide_sphere_buffer",
+        "sphere_point",
         6,
-        "wide spheres",
-        bytes(&packed.wide_spheres),
+        "points of spheres",
+        bytes(&packed.sphere_points),
     )?;
     add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
     add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;

@@ -1,7 +1,7 @@
 //! Exact rational arithmetic for the host: facts of the scene are decided here, not by rounding.
 
-use dashu_base::Sign;
-use dashu_int::IBig;
+use dashu_base::{Sign, SquareRoot as _};
+use dashu_int::{IBig, UBig};
 use glam::DVec3;
 
 pub use dashu_ratio::Relaxed as Ratio;
@@ -42,6 +42,18 @@ pub fn abs(value: Ratio) -> Ratio {
     if is_positive(&value) { value } else { -value }
 }
 
+/// The square root of a number that is not negative, if that is rational.
+pub fn root(square: &Ratio) -> Option<Ratio> {
+    let lowest = square.clone().canonicalize();
+    let whole = |n: &UBig| {
+        let root = n.sqrt();
+        (&root * &root == *n).then_some(root)
+    };
+    let numerator = UBig::try_from(lowest.numerator().clone()).ok()?;
+    let (top, bottom) = (whole(&numerator)?, whole(lowest.denominator())?);
+    Some(Ratio::from_parts(IBig::from(top), bottom))
+}
+
 /// The parity (0 or 1) of an integer.
 pub fn parity(n: &IBig) -> u32 {
     let (_, words) = n.as_sign_words();
@@ -51,7 +63,7 @@ pub fn parity(n: &IBig) -> u32 {
 
 /// 2^exponent.
 pub fn power_of_two(exponent: i32) -> Ratio {
-    let power = dashu_int::UBig::ONE << exponent.unsigned_abs() as usize;
+    let power = UBig::ONE << exponent.unsigned_abs() as usize;
     if exponent >= 0 {
         Ratio::from(IBig::from_parts(Sign::Positive, power))
     } else {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::View;
 use super::camera::{origin, step};
 use super::exact::{
-    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, sub, two_to,
+    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub, two_to,
 };
 use crate::real::{Real, V3};
 use crate::scene;
@@ -25,8 +25,37 @@ pub struct Plane<R> {
     /// Hit only where front\[0\]·x + front\[1\]·y + front\[2\] ≥ 0, with (x, y) the pixel: the rule H.z ≤ τ.
     /// None where that is so on the whole screen. The larger of the first two is ±1.
     pub front: Option<[R; 3]>,
+    /// The same where it depends on x or on y alone.
+    pub front_step: Option<Step>,
     /// The sides of a rectangle.
     pub sides: Option<Sides<R>>,
+}
+
+/// A border that runs along a column or a row of pixels, as an exact fact: inside is `pixel[axis] ≥ at`, or `≤ at`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// 0 for x, 1 for y.
+    pub axis: usize,
+    /// Whether inside is from `at` upwards.
+    pub rising: bool,
+    /// The border, in pixels.
+    pub at: Ratio,
+}
+
+impl Step {
+    /// The border of `form ≥ 0` over (x, y, 1), if it is one.
+    fn of(form: &[Ratio; 3]) -> Option<Self> {
+        let axis = match (is_zero(&form[0]), is_zero(&form[1])) {
+            (false, true) => 0,
+            (true, false) => 1,
+            _ => return None,
+        };
+        Some(Self {
+            axis,
+            rising: is_positive(&form[axis]),
+            at: -(&form[2] / &form[axis]),
+        })
+    }
 }
 
 /// The rectangle of a finite plane: p_i = rows\[i\]·P − origin\[i\] lies in [0, dimensions\[i\]] for i = 0 and 1.
@@ -47,6 +76,8 @@ pub struct Sides<R> {
     pub forms: [[R; 3]; 2],
     /// Lengths of the sides, in units of 2^scale.
     pub dimensions: [R; 2],
+    /// The borders p_0 ≥ 0, p_1 ≥ 0, p_0 ≤ d_0, p_1 ≤ d_1 that run along columns or rows.
+    pub steps: [Option<Step>; 4],
 }
 
 impl<R: Real> Extent<R> {
@@ -80,12 +111,15 @@ impl<R: Real> Extent<R> {
     }
 }
 
+/// A vector along the first side of a rectangle: (N·N)·xdir − (N·xdir)·N, which is rational.
+fn across(n: &[Ratio; 3], x: &[Ratio; 3]) -> [Ratio; 3] {
+    let (nn, nx) = (dot(n, n), dot(n, x));
+    [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx)
+}
+
 /// Unit vectors along the sides of a rectangle: R0 = unit(xdir − (N·xdir)N), R1 = N × R0, N of unit length.
 pub fn rows<R: Real>(normal: DVec3, xdir: DVec3) -> [V3<R>; 2] {
-    // (N·N)·xdir − (N·xdir)·N points the same way, and is rational.
-    let (n, x) = (ratio3(normal), ratio3(xdir));
-    let (nn, nx) = (dot(&n, &n), dot(&n, &x));
-    let across = [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx);
+    let across = across(&ratio3(normal), &ratio3(xdir));
     let largest = across
         .iter()
         .cloned()
@@ -130,6 +164,7 @@ impl<R: Real> Plane<R> {
             R::ratio(&c),
         ];
         let sides = extent.map(|extent| {
+            let steps = side_steps(camera, normal, point, extent, &[&a, &b, &c]);
             let extent = Extent::<R>::new(camera, scale, normal, point, extent);
             let distance = R::ratio(&(&v[2] / &unit));
             let form = |i: usize| {
@@ -143,15 +178,73 @@ impl<R: Real> Plane<R> {
             Sides {
                 forms: [form(0), form(1)],
                 dimensions: extent.dimensions,
+                steps,
             }
         });
         Some(Self {
             object,
             inverse,
+            front_step: if front.always {
+                None
+            } else {
+                Step::of(&front.form)
+            },
             front: (!front.always).then(|| front.form.map(|f| R::ratio(&f))),
             sides,
         })
     }
+}
+
+/// The sides that run along columns or rows; `inverse` is 1/s over (W.x, W.y, 1) in world units.
+fn side_steps(
+    camera: &scene::Camera,
+    normal: DVec3,
+    point: DVec3,
+    extent: &scene::Extent,
+    inverse: &[&Ratio; 3],
+) -> [Option<Step>; 4] {
+    let v = ratio3(camera.viewpoint);
+    let n = ratio3(normal);
+    let corner = sub(&ratio3(point), &v);
+    let first = across(&n, &ratio3(extent.xdir));
+    let cross = |i: usize, j: usize| &n[i] * &first[j] - &n[j] * &first[i];
+    let second = [cross(1, 2), cross(2, 0), cross(0, 1)];
+    let x = [
+        step(camera.pixeldim[0], camera.worlddim.x),
+        origin(camera.pixeldim[0], camera.worlddim.x) - &v[0],
+    ];
+    let y = [
+        step(camera.pixeldim[1], camera.worlddim.y),
+        origin(camera.pixeldim[1], camera.worlddim.y) - &v[1],
+    ];
+    // A form over (W.x, W.y, 1) as one over (x, y, 1).
+    let over_pixels = |f: &[Ratio; 3]| {
+        [
+            &f[0] * &x[0],
+            &f[1] * &y[0],
+            &f[0] * &x[1] + &f[1] * &y[1] + &f[2],
+        ]
+    };
+    let q = over_pixels(&inverse.map(Clone::clone));
+    let mut steps = [None, None, None, None];
+    for (i, (row, dimension)) in [(first, extent.dimensions.x), (second, extent.dimensions.y)]
+        .into_iter()
+        .enumerate()
+    {
+        // |row| times p/s, and the same for d − p where |row| is rational.
+        let offset = dot(&row, &corner);
+        let p = over_pixels(&[
+            &row[0] - &offset * inverse[0],
+            &row[1] - &offset * inverse[1],
+            -(&row[2] * &v[2]) - &offset * inverse[2],
+        ]);
+        steps[i] = Step::of(&p);
+        steps[i + 2] = root(&dot(&row, &row)).and_then(|length| {
+            let d = ratio(dimension) * length;
+            Step::of(&[&d * &q[0] - &p[0], &d * &q[1] - &p[1], &d * &q[2] - &p[2]])
+        });
+    }
+    steps
 }
 
 /// The rule H.z ≤ τ as a linear form over pixels that is ≥ 0 where it holds.

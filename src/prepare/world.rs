@@ -79,7 +79,6 @@ impl<R: Real> World<R> {
     pub fn new(scene: &Scene, scale: i32, screen_tolerance: f64) -> Self {
         let view = V3::exact(scene.camera.viewpoint);
         let unit = R::exact(two_to(-scale));
-        let mut groups = Groups::default();
         let mut world = Self {
             planes: Vec::new(),
             spheres: Vec::new(),
@@ -89,7 +88,7 @@ impl<R: Real> World<R> {
                 .iter()
                 .map(|light| Light::new(view, scale, light))
                 .collect(),
-            groups: Vec::with_capacity(scene.objects.len()),
+            groups: groups(scene),
             places: vec![0; scene.objects.len()],
             highest: R::ratio(
                 &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z))
@@ -97,7 +96,6 @@ impl<R: Real> World<R> {
             ),
         };
         for (object, entity) in scene.objects.iter().enumerate() {
-            world.groups.push(groups.of(&entity.shape));
             match entity.shape {
                 Shape::Plane {
                     normal,
@@ -189,6 +187,13 @@ fn lights_on_sphere(scene: &Scene, center: DVec3, radius: f64) -> Vec<usize> {
     (0..scene.lights.len())
         .filter(|&i| on(&scene.lights[i]))
         .collect()
+}
+
+/// For each object the number of the surface that it is or is part of: the same for the same set of points.
+pub fn groups(scene: &Scene) -> Vec<u32> {
+    let mut groups = Groups::default();
+    let of = |object: &crate::scene::Object| groups.of(&object.shape);
+    scene.objects.iter().map(of).collect()
 }
 
 /// Numbers for surfaces, the same for the same point set.

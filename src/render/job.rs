@@ -16,14 +16,12 @@ use crate::gpu::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands, compose};
 use crate::jitter::Jitter;
-use crate::prepare::{Prepared, View};
 use crate::scene::Scene;
 use crate::settings::Precision;
 
 /// Everything that a tracer needs to know.
 pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) view: View,
     pub(super) jitter: &'a Jitter,
     pub(super) tracer: &'a Tracer<'a>,
     /// The threads that the CPU's part runs on, if not all.
@@ -43,7 +41,7 @@ impl Job<'_> {
         report: &mut Report,
     ) -> Result<(), Error> {
         let start = Instant::now();
-        let packed = Packed::new(&Prepared::new(self.scene, self.view));
+        let packed = Packed::new(self.scene, self.settings);
         let (found, allowed) = (packed.loop_iterations(), compose::LOOP_ITERATIONS);
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());

@@ -227,7 +227,6 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     );
     let job = Job {
         scene,
-        view,
         jitter: &jitter,
         tracer: &tracer,
         pool: pool.as_ref(),

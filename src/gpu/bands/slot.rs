@@ -110,6 +110,8 @@ impl Slot {
         let job = Job {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
+            zero: 0,
+            unused: 0,
         };
         gpu.queue
             .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));

@@ -1,8 +1,9 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
-use super::{Light, LitObject, Material, Packed, WorldPlane, WorldSphere, f32x3};
+use super::{Light, LitObject, Material, Packed, Surfaces, WorldPlane, WorldSphere, f32x3};
+use crate::gpu::bounds::{U, fits, most, up};
 use crate::prepare::{self, Prepared, World, world};
-use crate::real::V3;
+use crate::real::{Bounded, Real, V3};
 
 /// The records of a lit scene, and what its materials can do.
 #[derive(Debug, Clone)]
@@ -19,62 +20,97 @@ pub struct Lit {
     pub spheres: Vec<WorldSphere>,
     /// How many of the spheres the tree holds.
     pub in_tree: usize,
-    /// A hit on a plane counts only up to this z.
-    pub highest: f32,
     /// Some object is a mirror.
     pub mirror: bool,
     /// Some object lets light through.
     pub clear: bool,
     /// Some object glints.
     pub glint: bool,
+    /// A light beyond those that have a bit lies on a surface.
+    pub late_level: bool,
 }
 
 /// Marks a sphere in [`LitObject::place`].
 const SPHERE_BIT: u32 = 1 << 31;
 
 impl Lit {
-    pub(super) fn new(scene: &Prepared<f64>, world: &World<f64>, packed: &Packed) -> Self {
-        let mut seen = vec![0; scene.surfaces.len()];
-        for (number, sphere) in (1..).zip(&packed.small_spheres) {
-            seen[sphere.object as usize] = number;
-        }
-        let place = |object: usize| {
-            world.places[object] as u32
-                | if scene.is_plane[object] {
-                    0
-                } else {
-                    SPHERE_BIT
-                }
-        };
+    pub(super) fn new(
+        scene: &Prepared<Bounded>,
+        world: &World<Bounded>,
+        packed: &Packed,
+        surfaces: &Surfaces,
+    ) -> Self {
         let used = || scene.materials.iter().map(|&index| &scene.palette[index]);
+        // The tree's spheres are all there: its leaves count on it.
+        let in_tree = world.bvh.as_ref().map_or(0, |bvh| bvh.len);
+        let planes: Vec<_> = world
+            .planes
+            .iter()
+            .filter(|p| !surfaces.hidden[p.object])
+            .collect();
+        let spheres: Vec<_> = world
+            .spheres
+            .iter()
+            .enumerate()
+            .filter(|(place, s)| *place < in_tree || !surfaces.hidden[s.object])
+            .map(|(_, sphere)| sphere)
+            .collect();
+        let mut places = vec![0; scene.surfaces.len()];
+        for (place, plane) in (0..).zip(&planes) {
+            places[plane.object] = place;
+        }
+        for (place, sphere) in (0..).zip(&spheres) {
+            places[sphere.object] = place | SPHERE_BIT;
+        }
+        let levels = planes
+            .iter()
+            .map(|p| &p.level)
+            .chain(spheres.iter().map(|s| &s.level));
         Self {
+            late_level: levels.flatten().any(|light| *light >= 32),
             objects: (0..scene.surfaces.len())
                 .map(|object| LitObject {
                     material: scene.materials[object] as u32,
                     kind: packed.objects[object].kind,
                     group: world.groups[object],
-                    place: place(object),
+                    place: places[object],
                 })
                 .collect(),
             materials: scene.palette.iter().map(material).collect(),
             lights: world.lights.iter().map(light).collect(),
-            planes: world
-                .planes
-                .iter()
-                .map(|plane| world_plane(world, plane))
-                .collect(),
-            spheres: world
-                .spheres
-                .iter()
-                .map(|s| world_sphere(world, s, seen[s.object]))
-                .collect(),
-            in_tree: world.bvh.as_ref().map_or(0, |bvh| bvh.len),
-            // An axis plane's own z meets the rule exactly, so its rounding must not cross it.
-            highest: world.highest as f32,
+            planes: planes.iter().map(|p| world_plane(world, p)).collect(),
+            spheres: spheres.iter().map(|s| world_sphere(world, s)).collect(),
+            in_tree,
             mirror: used().any(|material| material.mirror),
             clear: used().any(|material| material.clear),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
         }
+    }
+
+    /// Why no bound is to be relied on, as [`Packed::unprovable`].
+    pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
+        let fine = |numbers: &[f32]| numbers.iter().all(|n| fits(*n));
+        if self.late_level {
+            return Some("a light after the first 32 lies on a surface");
+        }
+        let planes = self
+            .planes
+            .iter()
+            .all(|p| fine(&[p.offset, p.origin_0, p.origin_1, p.sides_error]) && fine(&p.lengths));
+        let spheres = self
+            .spheres
+            .iter()
+            .all(|s| fine(&[s.size, s.radius, s.inverse_radius]));
+        let lights = self
+            .lights
+            .iter()
+            .all(|l| fine(&[l.size]) && fine(&l.emissivity));
+        let materials = self
+            .materials
+            .iter()
+            .all(|m| fine(&m.ambient) && fine(&m.diffuse) && fine(&m.specular));
+        (!(planes && spheres && lights && materials))
+            .then_some("an object's or light's numbers are too large")
     }
 
     /// Iterations of the loops over objects outside the tree, for one ray.
@@ -83,10 +119,10 @@ impl Lit {
     }
 }
 
-fn material(material: &prepare::Material<f64>) -> Material {
+fn material(material: &prepare::Material<Bounded>) -> Material {
     Material {
         ambient: f32x3(material.ambient),
-        transparency: material.transparency as f32,
+        transparency: material.transparency.value as f32,
         diffuse: f32x3(material.diffuse),
         shininess: if material.mirror {
             material.shininess as f32
@@ -94,23 +130,35 @@ fn material(material: &prepare::Material<f64>) -> Material {
             0.0
         },
         specular: f32x3(material.specular),
-        unused_0: 0,
+        power: if material.mirror
+            && material.shininess.fract() == 0.0
+            && material.shininess < 1024.0
+        {
+            material.shininess as u32
+        } else {
+            0
+        },
         tint: f32x3(material.tint),
-        unused_1: 0,
+        unused: 0,
     }
 }
 
-fn light(light: &prepare::Light<f64>) -> Light {
-    let zero = V3::new(0.0, 0.0, 0.0);
-    let (axis, cosine) = light.cone.unwrap_or((zero, -2.0));
+fn light(light: &prepare::Light<Bounded>) -> Light {
+    let zero = V3::exact(glam::DVec3::ZERO);
+    let (axis, cosine) = light.cone.unwrap_or((zero, Bounded::exact(-2.0)));
     Light {
         location: f32x3(light.location),
-        cosine: cosine as f32,
+        cosine: cosine.value as f32,
         emissivity: f32x3(light.emissivity),
-        unused_0: 0,
+        size: size(light.location),
         axis: f32x3(axis),
-        unused_1: 0,
+        unused: 0,
     }
+}
+
+/// The length, or a little more.
+fn size(v: V3<Bounded>) -> f32 {
+    up(most(v.dot(v).sqrt()))
 }
 
 /// The bits of the first 32 lights in a list. Beyond them f32's own rounding decides: fast rendering only.
@@ -122,44 +170,58 @@ fn bits(level: &[usize]) -> u32 {
         .sum()
 }
 
-fn world_plane(world: &World<f64>, plane: &world::WorldPlane<f64>) -> WorldPlane {
+fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> WorldPlane {
     let mut keep = [1.0; 3];
     let mut own = [0.0; 3];
+    let mut highest = world.highest.value as f32;
     if let Some((axis, at)) = plane.own {
         keep[axis] = 0.0;
-        own[axis] = at as f32;
+        own[axis] = at.value as f32;
+        if axis == 2 {
+            // All of it is below, or it would not be here.
+            highest = f32::MAX;
+        }
     }
-    let zero = V3::new(0.0, 0.0, 0.0);
+    let zero = V3::exact(glam::DVec3::ZERO);
+    let none = Bounded::zero();
     let (rows, origin, dimensions) = plane
         .extent
         .as_ref()
-        .map_or(([zero; 2], [0.0; 2], [0.0; 2]), |e| {
+        .map_or(([zero; 2], [none; 2], [none; 2]), |e| {
             (e.rows, e.origin, e.dimensions)
         });
+    let most_of = |values: [Bounded; 2]| most(values[0]).max(most(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),
-        offset: plane.offset as f32,
+        offset: plane.offset.value as f32,
         keep,
         group: world.groups[plane.object],
         own,
         object: plane.object as u32,
         row_0: f32x3(rows[0]),
-        origin_0: origin[0] as f32,
+        origin_0: origin[0].value as f32,
         row_1: f32x3(rows[1]),
-        origin_1: origin[1] as f32,
-        lengths: dimensions.map(|d| d as f32),
+        origin_1: origin[1].value as f32,
+        lengths: dimensions.map(|d| d.value as f32),
         level: bits(&plane.level),
         bounded: u32::from(plane.extent.is_some()),
+        highest,
+        sides_error: up(8.0 * U * (most_of(origin) + most_of(dimensions))),
+        unused: [0.0; 2],
     }
 }
 
-fn world_sphere(world: &World<f64>, sphere: &world::WorldSphere<f64>, seen: u32) -> WorldSphere {
+fn world_sphere(world: &World<Bounded>, sphere: &world::WorldSphere<Bounded>) -> WorldSphere {
     WorldSphere {
         center: f32x3(sphere.center),
-        radius: sphere.radius as f32,
+        radius: sphere.radius.value as f32,
         group: world.groups[sphere.object],
         object: sphere.object as u32,
         level: bits(&sphere.level),
-        seen,
+        size: size(sphere.center),
+        inverse_radius: (Bounded::exact(1.0) / sphere.radius).value as f32,
+        unused_0: 0,
+        unused_1: 0,
+        unused_2: 0,
     }
 }

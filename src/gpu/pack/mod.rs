@@ -1,14 +1,20 @@
 //! The prepared scene rounded to f32: flat records for the GPU, and the numbers that go into the shader's text.
 
 mod lit;
+mod primary;
 mod records;
 
 pub use lit::Lit;
 pub use records::*;
 
+use std::collections::HashSet;
+
+use super::bounds::{LARGEST, Screen, U, fits, most, up};
 use crate::prepare::surface::{Pplane, Textured, Tiled};
-use crate::prepare::{self, Prepared};
-use crate::real::V3;
+use crate::prepare::{self, Prepared, View, world};
+use crate::real::{Bounded, Real, V3};
+use crate::scene::{Scene, Shape};
+use crate::settings::{Settings, Spread};
 
 /// What `Object::kind` says in its low byte.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,12 +25,8 @@ pub enum Kind {
     Tiled,
     /// A `pplane` with this shader.
     Pplane(u32),
-    /// A `psphere` with this shader, small.
-    SmallPsphere(u32),
-    /// A `psphere` with this shader, wide.
-    WidePsphere(u32),
-    /// A `psphere` with this shader, in a lit scene.
-    LitPsphere(u32),
+    /// A `psphere` with this shader.
+    Psphere(u32),
     /// A `texplane`.
     Textured,
 }
@@ -37,8 +39,7 @@ impl Kind {
             Self::Tiled => 1,
             Self::Textured => 2,
             Self::Pplane(shader) => 64 + shader,
-            Self::SmallPsphere(shader) | Self::LitPsphere(shader) => 128 + shader,
-            Self::WidePsphere(shader) => 192 + shader,
+            Self::Psphere(shader) => 128 + shader,
         }
     }
 
@@ -48,9 +49,7 @@ impl Kind {
             Self::Plain => "KIND_PLAIN".into(),
             Self::Tiled => "KIND_TILED".into(),
             Self::Pplane(shader) => format!("KIND_PPLANE_{shader}"),
-            Self::SmallPsphere(shader) => format!("KIND_SMALL_PSPHERE_{shader}"),
-            Self::WidePsphere(shader) => format!("KIND_WIDE_PSPHERE_{shader}"),
-            Self::LitPsphere(shader) => format!("KIND_PSPHERE_{shader}"),
+            Self::Psphere(shader) => format!("KIND_PSPHERE_{shader}"),
             Self::Textured => "KIND_TEXTURED".into(),
         }
     }
@@ -75,10 +74,12 @@ pub struct Packed {
     pub bvh: Vec<BvhNode>,
     /// Depth of the tree.
     pub bvh_depth: usize,
-    /// Spheres seen small.
-    pub small_spheres: Vec<SmallSphere>,
-    /// The other spheres.
-    pub wide_spheres: Vec<WideSphere>,
+    /// Spheres that a primary ray can hit: those of the tree first.
+    pub spheres: Vec<Sphere>,
+    /// How many of them the tree holds.
+    pub in_tree: usize,
+    /// One for each of `spheres`: where it is hit.
+    pub sphere_points: Vec<SphereHit>,
     /// Tiled planes.
     pub tiled_planes: Vec<TiledPlane>,
     /// Procedural planes.
@@ -89,24 +90,56 @@ pub struct Packed {
     pub texels: Vec<u32>,
     /// What a lit scene needs beside.
     pub lit: Option<Lit>,
+    /// A surface farther away than where 1/|P| is this is black, whatever it is; of scenes without lights.
+    pub dark: f32,
+    /// The largest coordinate of the tree's boxes, all three summed.
+    pub tree_size: f32,
+    /// Why the error bounds cannot be relied on, if they cannot.
+    pub unprovable: Option<&'static str>,
 }
 
 impl Packed {
-    /// Rounds a prepared scene to f32.
-    pub fn new(scene: &Prepared<f64>) -> Self {
-        let world_tree = scene.world.as_ref().and_then(|world| world.bvh.as_ref());
-        let tree = if scene.world.is_some() {
+    /// Prepares a scene and rounds it to f32.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        let view = View::new(settings.screen_tolerance, settings.samples);
+        let lattice = match (settings.samples, settings.jitter) {
+            (0 | 1, _) => 1.0,
+            (_, Spread::Hash) => 1.0 / 1024.0,
+            (_, Spread::Course) => 0.0,
+        };
+        let screen = Screen {
+            pixels: scene.camera.pixeldim,
+            margin: view.margin,
+            lattice,
+        };
+        Self::prepared(
+            &Prepared::new(scene, view),
+            scene,
+            &screen,
+            settings.screen_tolerance,
+        )
+    }
+
+    fn prepared(
+        prepared: &Prepared<Bounded>,
+        scene: &Scene,
+        screen: &Screen,
+        tolerance: f64,
+    ) -> Self {
+        let world_tree = prepared.world.as_ref().and_then(|world| world.bvh.as_ref());
+        let tree = if prepared.world.is_some() {
             world_tree
         } else {
-            scene.bvh.as_ref()
+            prepared.bvh.as_ref()
         };
+        let surfaces = Surfaces::new(scene, prepared, tolerance);
         let mut packed = Self {
-            camera: camera(&scene.camera),
-            scale: scene.camera.scale,
-            objects: scene
+            camera: camera(&prepared.camera, screen),
+            scale: prepared.camera.scale,
+            objects: prepared
                 .materials
                 .iter()
-                .map(|&m| object(scene.palette[m].ambient))
+                .map(|&m| object(prepared.palette[m].ambient))
                 .collect(),
             kinds: Vec::new(),
             planes: Vec::new(),
@@ -117,57 +150,158 @@ impl Packed {
                 .map(bvh_node)
                 .collect(),
             bvh_depth: tree.map_or(0, |bvh| bvh.depth),
-            small_spheres: Vec::new(),
-            wide_spheres: Vec::new(),
+            spheres: Vec::new(),
+            in_tree: 0,
+            sphere_points: Vec::new(),
             tiled_planes: Vec::new(),
             pplanes: Vec::new(),
             texplanes: Vec::new(),
             texels: Vec::new(),
             lit: None,
+            dark: 0.0,
+            tree_size: 0.0,
+            unprovable: None,
         };
-        let mut textures = vec![None; scene.textures.len()];
-        for plane in &scene.planes {
-            match &plane.sides {
-                None => packed.planes.push(pack_plane(plane)),
-                Some(sides) => packed.rectangles.push(rectangle(plane, sides)),
-            }
+        // In a lit scene the tree is for all rays alike, and what it does not hold is asked with it.
+        if world_tree.is_none() {
+            packed.pack_primary(prepared, &surfaces, screen);
         }
-        for sphere in &scene.spheres {
-            // In a lit scene the tree holds them for all rays alike.
-            if world_tree.is_none() {
-                match &sphere.seen {
-                    Some(seen) => packed.small_spheres.push(small_sphere(sphere, seen)),
-                    None => packed.wide_spheres.push(wide_sphere(sphere)),
-                }
-            }
-        }
-        if scene.world.is_some() {
+        let mut textures = vec![None; prepared.textures.len()];
+        if prepared.world.is_some() {
             // Any ray can hit any object.
-            for object in 0..scene.surfaces.len() {
-                packed.pack_surface(scene, object, &mut textures);
+            for object in 0..prepared.surfaces.len() {
+                packed.pack_surface(prepared, object, &mut textures, 0);
             }
         } else {
-            let hit = scene
-                .planes
-                .iter()
-                .map(|plane| plane.object)
-                .chain(scene.spheres.iter().map(|s| s.object));
-            for object in hit {
-                packed.pack_surface(scene, object, &mut textures);
+            let planes = packed.planes.iter().map(|p| p.object);
+            let objects: Vec<u32> = planes
+                .chain(packed.rectangles.iter().map(|r| r.object))
+                .collect();
+            for object in objects {
+                packed.pack_surface(prepared, object as usize, &mut textures, 0);
             }
-            packed.point_pspheres(scene);
+            for record in 0..packed.spheres.len() {
+                let object = packed.spheres[record].object as usize;
+                packed.pack_surface(prepared, object, &mut textures, record);
+            }
         }
         packed.kinds.sort_unstable();
         packed.kinds.dedup();
-        packed.lit = scene
+        packed.lit = prepared
             .world
             .as_ref()
-            .map(|world| Lit::new(scene, world, &packed));
+            .map(|world| Lit::new(prepared, world, &packed, &surfaces));
+        packed.dark = packed.darkness();
+        packed.tree_size = up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
+        packed.unprovable = packed.doubtful_numbers();
         packed
     }
 
+    /// What primary rays can hit.
+    fn pack_primary(&mut self, scene: &Prepared<Bounded>, surfaces: &Surfaces, screen: &Screen) {
+        for plane in scene.planes.iter().filter(|p| !surfaces.hidden[p.object]) {
+            let group = surfaces.shared(plane.object);
+            match &plane.sides {
+                None => self
+                    .planes
+                    .push(primary::plane(&scene.camera, plane, screen, group)),
+                Some(sides) => self.rectangles.push(primary::rectangle(
+                    &scene.camera,
+                    plane,
+                    sides,
+                    screen,
+                    group,
+                )),
+            }
+        }
+        // The tree's spheres are all there: its leaves count on it.
+        self.in_tree = scene.bvh.as_ref().map_or(0, |bvh| bvh.len);
+        for (place, sphere) in scene.spheres.iter().enumerate() {
+            if place < self.in_tree || !surfaces.hidden[sphere.object] {
+                let (sphere, point) = primary::sphere(&scene.camera, sphere, screen);
+                self.spheres.push(sphere);
+                self.sphere_points.push(point);
+            }
+        }
+    }
+
+    /// 1/|P| below which the byte is 0 whatever is hit: 0.9/255 over the brightest ambient reflectivity there is.
+    fn darkness(&self) -> f32 {
+        let brightest = |color: &[f32; 3]| f64::from(color.iter().copied().fold(0.0, f32::max));
+        let objects = self.objects.iter().map(|o| brightest(&o.ambient));
+        let others = self.tiled_planes.iter().map(|t| brightest(&t.altmaterial));
+        let wheels = self.kinds.iter().map(|kind| match kind {
+            Kind::Pplane(_) => 12.0,
+            Kind::Psphere(_) => 2.0,
+            _ => 0.0,
+        });
+        let most = objects.chain(others).chain(wheels).fold(1e-30, f64::max);
+        (0.9 / (most * 1.001 * f64::from(self.camera.gain))).min(f64::from(f32::MAX)) as f32
+    }
+
+    /// Why no bound is to be relied on: a number so large that products of such numbers might overflow.
+    fn doubtful_numbers(&self) -> Option<&'static str> {
+        let fine = |numbers: &[f32]| numbers.iter().all(|n| fits(*n));
+        let camera = &self.camera;
+        let far = f64::from(camera.spread) <= 4.0
+            && fine(&camera.offset)
+            && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
+            && fine(&[camera.gain, 1.0 / camera.gain])
+            && f64::from(self.dark) > 1.0 / LARGEST / LARGEST;
+        if !far {
+            return Some("the camera's numbers are too large or too small");
+        }
+        let planes = self
+            .planes
+            .iter()
+            .all(|p| fine(&p.inverse) && fine(&p.front) && fine(&[p.inverse_error, p.front_error]));
+        let rectangles = self.rectangles.iter().all(|r| {
+            let sides = [
+                &r.inverse, &r.front, &r.side_0, &r.side_1, &r.side_2, &r.side_3,
+            ];
+            sides.into_iter().all(|s| fine(s))
+                && fine(&r.side_errors)
+                && fine(&[r.inverse_error, r.front_error])
+        });
+        let spheres = self.spheres.iter().all(|s| {
+            fine(&s.along)
+                && fine(&s.square)
+                && fine(&s.affine)
+                && fine(&[s.gain, s.along_error, s.disc_error])
+        });
+        let points = self.sphere_points.iter().all(|p| {
+            fine(&p.form_x)
+                && fine(&p.form_y)
+                && fine(&p.form_z)
+                && fine(&[p.inverse_radius, p.form_error, p.center_size])
+        });
+        let surfaces = self
+            .tiled_planes
+            .iter()
+            .all(|t| fine(&t.spread) && fine(&t.errors))
+            && self.pplanes.iter().all(|p| {
+                fine(&p.per_unit)
+                    && fine(&p.from_point)
+                    && fine(&[p.index_error, p.from_point_error])
+            })
+            && self
+                .texplanes
+                .iter()
+                .all(|t| fine(&t.spread) && fine(&t.errors) && fine(&[t.origin_0, t.origin_1]));
+        if !(planes && rectangles && spheres && points && surfaces) {
+            return Some("an object's numbers are too large");
+        }
+        self.lit.as_ref().and_then(Lit::doubtful_numbers)
+    }
+
     /// Packs what modulates an object's material, and notes it in the object.
-    fn pack_surface(&mut self, scene: &Prepared<f64>, object: usize, textures: &mut [Option<u32>]) {
+    fn pack_surface(
+        &mut self,
+        scene: &Prepared<Bounded>,
+        object: usize,
+        textures: &mut [Option<u32>],
+        record: usize,
+    ) {
         match &scene.surfaces[object] {
             prepare::Surface::Tiled(tiled) => {
                 self.tiled_planes
@@ -192,32 +326,10 @@ impl Packed {
                 self.texplanes.push(texplane(textured, first));
                 self.set_kind(object, Kind::Textured, self.texplanes.len() - 1);
             }
-            prepare::Surface::Psphere(shader) if scene.world.is_some() => {
-                self.set_kind(object, Kind::LitPsphere(*shader), 0);
+            prepare::Surface::Psphere(shader) => {
+                self.set_kind(object, Kind::Psphere(*shader), record);
             }
-            // Those of an unlit scene are told apart afterwards.
-            prepare::Surface::Psphere(_) => {}
             prepare::Surface::Plain => self.set_kind(object, Kind::Plain, 0),
-        }
-    }
-
-    /// Tells the procedural spheres of an unlit scene which record is theirs.
-    fn point_pspheres(&mut self, scene: &Prepared<f64>) {
-        let shader = |object: u32| match scene.surfaces[object as usize] {
-            prepare::Surface::Psphere(shader) => Some(shader),
-            _ => None,
-        };
-        let small: Vec<_> = self.small_spheres.iter().map(|s| s.object).collect();
-        for (record, object) in small.into_iter().enumerate() {
-            if let Some(shader) = shader(object) {
-                self.set_kind(object as usize, Kind::SmallPsphere(shader), record);
-            }
-        }
-        let wide: Vec<_> = self.wide_spheres.iter().map(|s| s.object).collect();
-        for (record, object) in wide.into_iter().enumerate() {
-            if let Some(shader) = shader(object) {
-                self.set_kind(object as usize, Kind::WidePsphere(shader), record);
-            }
         }
     }
 
@@ -235,12 +347,10 @@ impl Packed {
 
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
-        let spheres = if self.lit.is_some() && !self.bvh.is_empty() {
-            self.lit.as_ref().map_or(0, |lit| lit.spheres.len())
-        } else {
-            self.small_spheres.len() + self.wide_spheres.len()
-        };
-        self.planes.len() + self.rectangles.len() + spheres
+        match &self.lit {
+            Some(lit) if !self.bvh.is_empty() => lit.planes.len() + lit.spheres.len(),
+            _ => self.planes.len() + self.rectangles.len() + self.spheres.len(),
+        }
     }
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
@@ -253,32 +363,100 @@ impl Packed {
 
     /// Iterations of the loops over objects outside the tree, for one primary ray.
     pub fn loop_iterations(&self) -> usize {
-        let small = if self.bvh.is_empty() {
-            self.small_spheres.len()
+        match &self.lit {
+            Some(lit) if !self.bvh.is_empty() => lit.loop_iterations(),
+            _ => self.planes.len() + self.rectangles.len() + self.spheres.len() - self.in_tree,
+        }
+    }
+}
+
+/// Which objects share a surface, and which never come first on theirs.
+#[derive(Debug)]
+struct Surfaces {
+    /// The number of each object's surface.
+    groups: Vec<u32>,
+    /// Whether no ray hits it: an object that comes before covers all of it, or all of it is before the screen.
+    hidden: Vec<bool>,
+    /// For each surface, whether several objects that are not hidden share it.
+    shared: Vec<bool>,
+}
+
+impl Surfaces {
+    fn new(scene: &Scene, prepared: &Prepared<Bounded>, tolerance: f64) -> Self {
+        let groups = match &prepared.world {
+            Some(world) => world.groups.clone(),
+            None => world::groups(scene),
+        };
+        let mut covered = HashSet::new();
+        let mut members = vec![0_u32; groups.iter().map(|g| *g as usize + 1).max().unwrap_or(0)];
+        let mut hidden = Vec::with_capacity(groups.len());
+        for (object, group) in scene.objects.iter().zip(&groups) {
+            // A plane of constant z before τ is never hit.
+            let before = matches!(object.shape, Shape::Plane { normal, point, .. }
+                if normal.x == 0.0 && normal.y == 0.0 && point.z > tolerance);
+            let hides = before || covered.contains(group);
+            hidden.push(hides);
+            if !hides {
+                members[*group as usize] += 1;
+            }
+            if !matches!(
+                object.shape,
+                Shape::Plane {
+                    extent: Some(_),
+                    ..
+                }
+            ) {
+                covered.insert(*group);
+            }
+        }
+        Self {
+            groups,
+            hidden,
+            shared: members.into_iter().map(|n| n > 1).collect(),
+        }
+    }
+
+    /// A number for the object's surface if others share it, else 0.
+    fn shared(&self, object: usize) -> u32 {
+        let group = self.groups[object];
+        if self.shared[group as usize] {
+            group + 1
         } else {
             0
-        };
-        self.planes.len() + self.rectangles.len() + small + self.wide_spheres.len()
+        }
     }
 }
 
-pub(super) fn f32x3(v: V3<f64>) -> [f32; 3] {
-    [v.x as f32, v.y as f32, v.z as f32]
+fn node_size(node: &BvhNode) -> f64 {
+    let corner = |i: usize| f64::from(node.min[i].abs().max(node.max[i].abs()));
+    corner(0) + corner(1) + corner(2)
 }
 
-fn camera(camera: &prepare::Camera<f64>) -> CameraText {
+pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
+    [v.x.value as f32, v.y.value as f32, v.z.value as f32]
+}
+
+fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> CameraText {
     let unit = prepare::exact::two_to(-camera.scale);
+    let reach = screen.reach(camera.anchor);
+    let d = camera.distance.value;
+    let offset = camera.offset.map(most);
+    let parts = [0, 1].map(|i| most(camera.step[i]) * reach[i] + offset[i]);
+    // κ − 1 = Σ 2o/(√(d² + o²) − o): docs/NUMERICS.md.
+    let more = offset.map(|o| 2.0 * o / ((d * d + o * o).sqrt() - o));
     CameraText {
         anchor: camera.anchor,
-        step: camera.step.map(|v| v as f32),
-        offset: camera.offset.map(|v| v as f32),
-        distance: camera.distance as f32,
+        step: camera.step.map(|v| v.value as f32),
+        offset: camera.offset.map(|v| v.value as f32),
+        distance: d as f32,
         gain: (255.0 * unit) as f32,
         unit: unit as f32,
+        w_error: up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
+        spread: up(1.0 + more[0] + more[1]),
     }
 }
 
-fn object(ambient: V3<f64>) -> Object {
+fn object(ambient: V3<Bounded>) -> Object {
     Object {
         ambient: f32x3(ambient),
         kind: 0,
@@ -294,105 +472,78 @@ fn bvh_node(node: &prepare::bvh::Node) -> BvhNode {
     }
 }
 
-fn form(form: [f64; 3]) -> [f32; 3] {
-    form.map(|v| v as f32)
+/// The bound of an index's error that does not come from the position: of the fraction added to it.
+fn index_error(fraction: Bounded) -> f32 {
+    up(6.0 * U * (1.0 + most(fraction)) + 2.0 * fraction.error)
 }
 
-fn pack_plane(plane: &prepare::Plane<f64>) -> Plane {
-    Plane {
-        inverse: form(plane.inverse),
-        object: plane.object as u32,
-        front: plane.front.map_or([0.0; 3], form),
-        unused: 0,
-    }
+fn length(row: V3<Bounded>) -> f32 {
+    up(most(row.dot(row).sqrt()))
 }
 
-fn rectangle(plane: &prepare::Plane<f64>, sides: &prepare::plane::Sides<f64>) -> Rectangle {
-    Rectangle {
-        inverse: form(plane.inverse),
-        object: plane.object as u32,
-        front: plane.front.map_or([0.0; 3], form),
-        unused: 0,
-        side_0: form(sides.forms[0]),
-        length_0: sides.dimensions[0] as f32,
-        side_1: form(sides.forms[1]),
-        length_1: sides.dimensions[1] as f32,
-    }
-}
-
-fn small_sphere(sphere: &prepare::Sphere<f64>, seen: &prepare::sphere::Seen<f64>) -> SmallSphere {
-    SmallSphere {
-        toward: f32x3(sphere.toward),
-        rho2: sphere.rho2 as f32,
-        gain: sphere.gain as f32,
-        distance: sphere.distance as f32,
-        offset: seen.offset.map(|v| v as f32),
-        anchor: seen.anchor,
-        object: sphere.object as u32,
-        unused: 0,
-    }
-}
-
-fn wide_sphere(sphere: &prepare::Sphere<f64>) -> WideSphere {
-    WideSphere {
-        toward: f32x3(sphere.toward),
-        kappa2: sphere.kappa2 as f32,
-        gain: sphere.gain as f32,
-        distance: sphere.distance as f32,
-        object: sphere.object as u32,
-        unused: 0,
-    }
-}
-
-fn tiled_plane(scene: &Prepared<f64>, tiled: &Tiled<f64>, own: usize) -> TiledPlane {
-    let zero = V3::new(0.0, 0.0, 0.0);
-    let world = [V3 { x: 1.0, ..zero }, V3 { z: 1.0, ..zero }];
+fn tiled_plane(scene: &Prepared<Bounded>, tiled: &Tiled<Bounded>, own: usize) -> TiledPlane {
+    let (zero, one) = (Bounded::zero(), Bounded::exact(1.0));
+    let world = [V3::new(one, zero, zero), V3::new(zero, zero, one)];
     let rows = tiled.rows.unwrap_or(world);
+    let rows = [
+        rows[0] * tiled.index[0].per_unit,
+        rows[1] * tiled.index[1].per_unit,
+    ];
     let [even, odd] = tiled.materials;
     // The shader gives even sums the object's own material.
     let (other, flip) = if even == own { (odd, 0) } else { (even, 1) };
     TiledPlane {
-        row_0: f32x3(rows[0] * tiled.index[0].per_unit),
-        fraction_0: tiled.index[0].fraction as f32,
-        row_1: f32x3(rows[1] * tiled.index[1].per_unit),
-        fraction_1: tiled.index[1].fraction as f32,
+        row_0: f32x3(rows[0]),
+        fraction_0: tiled.index[0].fraction.value as f32,
+        row_1: f32x3(rows[1]),
+        fraction_1: tiled.index[1].fraction.value as f32,
         altmaterial: f32x3(scene.palette[other].ambient),
         altindex: other as u32,
         parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
-        padding: [0; 3],
-        unused: [0.0; 3],
-        padding_end: 0,
+        padding: 0,
+        spread: rows.map(length),
+        errors: tiled.index.map(|i| index_error(i.fraction)),
+        padding_end: [0; 2],
     }
 }
 
-fn procedural_plane(pplane: &Pplane<f64>) -> ProceduralPlane {
+fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
     let [x, y] = pplane.from_point;
+    let offset = most(x.offset).max(most(y.offset));
     ProceduralPlane {
-        per_unit: pplane.index.map(|i| i.per_unit as f32),
-        unused_0: 0,
-        fraction: pplane.index.map(|i| i.fraction as f32),
-        unused_1: 0,
+        per_unit: pplane.index.map(|i| i.per_unit.value as f32),
+        index_error: pplane
+            .index
+            .map(|i| index_error(i.fraction))
+            .into_iter()
+            .fold(0.0, f32::max),
+        fraction: pplane.index.map(|i| i.fraction.value as f32),
+        from_point_error: up(4.0 * U * offset + x.offset.error + y.offset.error),
         parity: pplane.index.map(|i| i.parity as f32),
-        unused_2: 0,
+        unused: 0,
         from_point: [
-            x.per_unit as f32,
-            y.per_unit as f32,
-            x.offset as f32,
-            y.offset as f32,
+            x.per_unit.value as f32,
+            y.per_unit.value as f32,
+            x.offset.value as f32,
+            y.offset.value as f32,
         ],
     }
 }
 
-fn texplane(textured: &Textured<f64>, first: u32) -> Texplane {
+fn texplane(textured: &Textured<Bounded>, first: u32) -> Texplane {
     let extent = &textured.extent;
     let [u, v] = textured.per_unit;
+    let rows = [extent.rows[0] * u, extent.rows[1] * v];
+    let origins = [extent.origin[0] * u, extent.origin[1] * v];
     Texplane {
-        row_0: f32x3(extent.rows[0] * u),
-        origin_0: (extent.origin[0] * u) as f32,
-        row_1: f32x3(extent.rows[1] * v),
-        origin_1: (extent.origin[1] * v) as f32,
+        row_0: f32x3(rows[0]),
+        origin_0: origins[0].value as f32,
+        row_1: f32x3(rows[1]),
+        origin_1: origins[1].value as f32,
         size: textured.size,
         first,
         repeats: u32::from(textured.repeats),
+        spread: rows.map(length),
+        errors: origins.map(index_error),
     }
 }

@@ -16,74 +16,96 @@ pub struct Object {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Plane {
-    /// 1/s over (W.x, W.y, 1).
+    /// 1/s over (X, Y, 1), the pixel from the camera's anchor.
     pub inverse: [f32; 3],
     /// Index of the object.
     pub object: u32,
-    /// ≥ 0 over (x, y, 1) where the hit counts; zeros where it always does.
+    /// ≥ 0 over (X, Y, 1) where the hit counts.
     pub front: [f32; 3],
+    /// Number of the surface, where others share it; else 0.
+    pub group: u32,
+    /// Bound of the error of 1/s.
+    pub inverse_error: f32,
+    /// Bound of the error of `front`.
+    pub front_error: f32,
     /// Nothing.
-    pub unused: u32,
+    pub unused: [f32; 2],
 }
 
 /// `Rectangle` in `shaders/plane.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Rectangle {
-    /// 1/s over (W.x, W.y, 1).
+    /// 1/s over (X, Y, 1).
     pub inverse: [f32; 3],
     /// Index of the object.
     pub object: u32,
-    /// ≥ 0 over (x, y, 1) where the hit counts; zeros where it always does.
+    /// ≥ 0 over (X, Y, 1) where the hit counts.
     pub front: [f32; 3],
-    /// Nothing.
-    pub unused: u32,
-    /// p_0/s over (W.x, W.y, 1).
+    /// As in a [`Plane`].
+    pub group: u32,
+    /// ≥ 0 over (X, Y, 1) on the inner side of the first side, and so on.
     pub side_0: [f32; 3],
-    /// Length of the first side.
-    pub length_0: f32,
-    /// p_1/s over (W.x, W.y, 1).
+    /// Bound of the error of 1/s.
+    pub inverse_error: f32,
+    /// The side next to it.
     pub side_1: [f32; 3],
-    /// Length of the second side.
-    pub length_1: f32,
+    /// Bound of the error of `front`.
+    pub front_error: f32,
+    /// The side opposite the first.
+    pub side_2: [f32; 3],
+    /// Nothing.
+    pub unused_0: u32,
+    /// The side opposite the second.
+    pub side_3: [f32; 3],
+    /// Nothing.
+    pub unused_1: u32,
+    /// Bounds of the errors of the four sides.
+    pub side_errors: [f32; 4],
 }
 
-/// `SmallSphere` in `shaders/sphere.wgsl`.
+/// `Sphere` in `shaders/sphere.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct SmallSphere {
-    /// Unit vector to the center.
-    pub toward: [f32; 3],
-    /// (r/|C|)².
-    pub rho2: f32,
+pub struct Sphere {
+    /// e·W over (X, Y, 1), the pixel from `anchor`.
+    pub along: [f32; 3],
     /// |C|/(|C|² − r²).
     pub gain: f32,
-    /// |C|.
-    pub distance: f32,
-    /// W − W_c at the anchor.
-    pub offset: [f32; 2],
-    /// Pixel next to the projected center.
-    pub anchor: [i32; 2],
+    /// The discriminant's coefficients of X², XY, Y².
+    pub square: [f32; 3],
     /// Index of the object.
     pub object: u32,
+    /// The discriminant's coefficients of X, Y, 1.
+    pub affine: [f32; 3],
+    /// Bound of the error of `along`.
+    pub along_error: f32,
+    /// Where X and Y start.
+    pub anchor: [i32; 2],
+    /// Bound of the error of the discriminant.
+    pub disc_error: f32,
     /// Nothing.
     pub unused: u32,
 }
 
-/// `WideSphere` in `shaders/sphere.wgsl`.
+/// `SphereHit` in `shaders/sphere.wgsl`: (H − C)/(r·s) = forms − center·√disc.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct WideSphere {
-    /// Unit vector to the center.
-    pub toward: [f32; 3],
-    /// (|C|² − r²)/|C|².
-    pub kappa2: f32,
-    /// |C|/(|C|² − r²).
-    pub gain: f32,
-    /// |C|.
-    pub distance: f32,
-    /// Index of the object.
-    pub object: u32,
+pub struct SphereHit {
+    /// First component over (X, Y, 1).
+    pub form_x: [f32; 3],
+    /// 1/r.
+    pub inverse_radius: f32,
+    /// Second component.
+    pub form_y: [f32; 3],
+    /// Bound of the errors of the forms, as a vector.
+    pub form_error: f32,
+    /// Third component.
+    pub form_z: [f32; 3],
+    /// gain·|C|/r.
+    pub center_size: f32,
+    /// gain·C/r.
+    pub center: [f32; 3],
     /// Nothing.
     pub unused: u32,
 }
@@ -120,12 +142,14 @@ pub struct TiledPlane {
     pub altindex: u32,
     /// The parities together: odd sums have the other material.
     pub parity: f32,
-    /// Nothing: a vec3 starts at a multiple of 16 bytes, and the struct ends at one.
-    pub padding: [u32; 3],
-    /// Nothing.
-    pub unused: [f32; 3],
-    /// Nothing.
-    pub padding_end: u32,
+    /// Nothing: a vec2 starts at a multiple of 8 bytes.
+    pub padding: u32,
+    /// Lengths of the rows.
+    pub spread: [f32; 2],
+    /// Bounds of the indices' errors, but for what the position's error adds.
+    pub errors: [f32; 2],
+    /// Nothing: the struct ends at a multiple of 16 bytes.
+    pub padding_end: [u32; 2],
 }
 
 /// `Pplane` in `shaders/surface.wgsl`.
@@ -134,16 +158,16 @@ pub struct TiledPlane {
 pub struct ProceduralPlane {
     /// Tiles a unit, along x, y, z.
     pub per_unit: [f32; 3],
-    /// Nothing.
-    pub unused_0: u32,
+    /// Bound of the indices' errors, but for what the position's error adds.
+    pub index_error: f32,
     /// Fraction of the index at the viewpoint.
     pub fraction: [f32; 3],
-    /// Nothing.
-    pub unused_1: u32,
+    /// The same for `from_point`.
+    pub from_point_error: f32,
     /// Parities, 0 or 1.
     pub parity: [f32; 3],
     /// Nothing.
-    pub unused_2: u32,
+    pub unused: u32,
     /// Factors of x and y, then what is subtracted from them.
     pub from_point: [f32; 4],
 }
@@ -156,6 +180,10 @@ pub struct Job {
     pub first: [u32; 2],
     /// Columns and rows.
     pub size: [u32; 2],
+    /// 0, which only the host knows.
+    pub zero: u32,
+    /// Nothing.
+    pub unused: u32,
 }
 
 /// The camera's numbers, which go into the text of the shader.
@@ -173,6 +201,10 @@ pub struct CameraText {
     pub gain: f32,
     /// 1 / 2^scale.
     pub unit: f32,
+    /// Bound of the error of W, as a vector.
+    pub w_error: f32,
+    /// κ ≥ 1 (docs/NUMERICS.md): the terms that W·W is a sum of, over W·W.
+    pub spread: f32,
 }
 
 /// `Texplane` in `shaders/surface.wgsl`.
@@ -193,6 +225,10 @@ pub struct Texplane {
     pub first: u32,
     /// 1 where the picture repeats.
     pub repeats: u32,
+    /// Lengths of the rows.
+    pub spread: [f32; 2],
+    /// Bounds of the indices' errors, but for what the position's error adds.
+    pub errors: [f32; 2],
 }
 
 /// `Object` in `shaders/surface.wgsl`, of a lit scene.
@@ -223,12 +259,12 @@ pub struct Material {
     pub shininess: f32,
     /// Specular reflectivity.
     pub specular: [f32; 3],
-    /// Nothing.
-    pub unused_0: u32,
+    /// The exponent if it is a whole number from 1 to 1023, else 0.
+    pub power: u32,
     /// What tints light that goes through.
     pub tint: [f32; 3],
     /// Nothing.
-    pub unused_1: u32,
+    pub unused: u32,
 }
 
 /// `Light` in `shaders/light.wgsl`.
@@ -241,12 +277,12 @@ pub struct Light {
     pub cosine: f32,
     /// How bright it is.
     pub emissivity: [f32; 3],
-    /// Nothing.
-    pub unused_0: u32,
+    /// Length of `location`.
+    pub size: f32,
     /// A spotlight's axis.
     pub axis: [f32; 3],
     /// Nothing.
-    pub unused_1: u32,
+    pub unused: u32,
 }
 
 /// `WorldPlane` in `shaders/plane.wgsl`.
@@ -279,6 +315,12 @@ pub struct WorldPlane {
     pub level: u32,
     /// 1 for a rectangle.
     pub bounded: u32,
+    /// A hit counts only up to this z.
+    pub highest: f32,
+    /// Bound of the errors of the coordinates on the rectangle, but for what the position's error adds.
+    pub sides_error: f32,
+    /// Nothing.
+    pub unused: [f32; 2],
 }
 
 /// `WorldSphere` in `shaders/sphere.wgsl`.
@@ -295,6 +337,14 @@ pub struct WorldSphere {
     pub object: u32,
     /// Bit i: light i lies on the sphere.
     pub level: u32,
-    /// Its number among the small spheres plus one; 0 for none.
-    pub seen: u32,
+    /// Length of `center`.
+    pub size: f32,
+    /// 1 / radius.
+    pub inverse_radius: f32,
+    /// Nothing.
+    pub unused_0: u32,
+    /// Nothing.
+    pub unused_1: u32,
+    /// Nothing.
+    pub unused_2: u32,
 }

@@ -1,0 +1,167 @@
+//! Error bounds for f32 on the GPU: the model of its arithmetic, the constants named in `shaders/`, and the literal bounds
+//! that the host derives for forms over the pixel. Each constant is derived in docs/NUMERICS.md under its name.
+
+use crate::prepare::exact::ratio;
+use crate::prepare::plane::Step;
+use crate::real::Bounded;
+
+/// What + − × may be off by, relatively: the results are faithfully rounded.
+pub const U: f64 = 1.0 / 8_388_608.0;
+
+/// Added to every literal bound: what flushed subnormals may amount to.
+const FLOOR: f64 = 1.0 / (1_u128 << 100) as f64;
+
+/// No number that goes to the GPU may be larger: then no product of those that meet there overflows.
+pub const LARGEST: f64 = (1_u64 << 40) as f64;
+
+/// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
+const LINEAR_ROUNDINGS: [f64; 2] = [6.0, 8.0];
+/// The same for a quadratic form with six coefficients.
+const QUADRATIC_ROUNDINGS: [f64; 2] = [9.0, 18.0];
+/// What an offset that was rounded to f32 may be off by, in pixels.
+const OFFSET_ERROR: f64 = 1.0 / 33_554_432.0;
+
+/// Roundings of |W|, of W/|W| and of an ambient value, for a unit of κ.
+pub const LENGTH_ROUNDINGS: f64 = 20.0;
+/// See [`LENGTH_ROUNDINGS`].
+pub const DIR_ROUNDINGS: f64 = 12.0;
+/// See [`LENGTH_ROUNDINGS`].
+pub const VALUE_ROUNDINGS: f64 = 12.0;
+
+/// The constants that the shader's text refers to by name.
+pub const NAMED: &[(&str, f64)] = &[
+    ("U", U),
+    // What a square root is taken of is at least this.
+    ("TINY_SQUARE", 1.0 / (1_u128 << 110) as f64),
+    // Secondary hits farther than this are left to the CPU, and primary ones beyond its inverse.
+    ("FARTHEST", (1_u64 << 40) as f64),
+    ("LEAST_INVERSE", 1.0 / (1_u64 << 40) as f64),
+    ("PLANE_ROUNDINGS", 6.0),
+    ("POSITION_ROUNDINGS", 5.0),
+    ("PERPENDICULAR_ROUNDINGS", 12.0),
+    ("DISC_ROUNDINGS", 12.0),
+    ("ROOT_ROUNDINGS", 10.0),
+    ("NORMAL_ROUNDINGS", 5.0),
+    ("DIRECTION_ROUNDINGS", 8.0),
+    ("DOT_ROUNDINGS", 5.0),
+    ("MIRROR_ROUNDINGS", 18.0),
+    ("INDEX_ROUNDINGS", 5.0),
+    ("WHEEL_ROUNDINGS", 20.0),
+];
+
+/// The pixels of the picture, and how rays pass through them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Screen {
+    /// Columns and rows.
+    pub pixels: [u32; 2],
+    /// How far from its pixel's center a ray may pass: 0 or ½.
+    pub margin: f64,
+    /// Rays pass at whole multiples of this share of a pixel; 0 where they pass anywhere.
+    pub lattice: f64,
+}
+
+impl Screen {
+    /// The largest |X| and |Y|, counted from `anchor`.
+    pub fn reach(&self, anchor: [i32; 2]) -> [f64; 2] {
+        [0, 1].map(|i| {
+            let first = -f64::from(anchor[i]);
+            let last = f64::from(self.pixels[i] - 1) + first;
+            first.abs().max(last.abs()) + self.margin
+        })
+    }
+
+    fn sampled(&self) -> usize {
+        usize::from(self.margin > 0.0)
+    }
+
+    /// What a coordinate's own rounding adds to the error of a form, for a unit of its coefficient.
+    fn offset_error(&self) -> f64 {
+        if self.margin > 0.0 && self.lattice == 0.0 {
+            OFFSET_ERROR
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The f32 next above.
+pub fn up(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) >= value || !near.is_finite() {
+        near
+    } else {
+        near.next_up()
+    }
+}
+
+/// A form's coefficients in f32, and the bound of its error.
+pub type Form<const N: usize> = ([f32; N], f32);
+
+/// A linear form over (X, Y, 1), where |X| and |Y| are at most `reach`.
+pub fn linear(form: [Bounded; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
+    let most = [reach[0], reach[1], 1.0];
+    let moved = [screen.offset_error(), screen.offset_error(), 0.0];
+    let mut error = FLOOR;
+    for i in 0..3 {
+        error += bound(form[i], most[i], LINEAR_ROUNDINGS[screen.sampled()])
+            + form[i].value.abs() * moved[i];
+    }
+    (form.map(|c| c.value as f32), up(error))
+}
+
+/// A quadratic form over (X², XY, Y², X, Y, 1).
+pub fn quadratic(form: [Bounded; 6], reach: [f64; 2], screen: &Screen) -> Form<6> {
+    let [x, y] = reach;
+    let most = [x * x, x * y, y * y, x, y, 1.0];
+    let slope = screen.offset_error();
+    let moved = [2.0 * x, x + y, 2.0 * y, 1.0, 1.0, 0.0].map(|m| m * slope);
+    let mut error = FLOOR;
+    for i in 0..6 {
+        error += bound(form[i], most[i], QUADRATIC_ROUNDINGS[screen.sampled()])
+            + form[i].value.abs() * moved[i];
+    }
+    (form.map(|c| c.value as f32), up(error))
+}
+
+/// What one term adds to a form's error.
+fn bound(coefficient: Bounded, most: f64, roundings: f64) -> f64 {
+    most * (roundings * U * coefficient.value.abs() + coefficient.error) * (1.0 + 1e-6)
+}
+
+/// An upper bound of |value|, as an f64.
+pub fn most(value: Bounded) -> f64 {
+    (value.value.abs() + value.error) * (1.0 + 1e-9)
+}
+
+/// The border `at` of a half-plane of pixels, x ≥ at or x ≤ at for one coordinate, as a form whose sign no rounding can
+/// change: it runs midway between two rays that are neighbours. None where the pixels are too far from the anchor for that.
+pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
+    let axis = step.axis;
+    if screen.lattice == 0.0 {
+        return None;
+    }
+    let steps = (&step.at - ratio(f64::from(anchor[axis]))) / ratio(screen.lattice);
+    let border = if step.rising {
+        f64::try_from(steps.ceil()).ok()? - 0.5
+    } else {
+        f64::try_from(steps.floor()).ok()? + 0.5
+    } * screen.lattice;
+    let reach = screen.reach(anchor);
+    // The half step must have a bit in every sum.
+    let room = screen.lattice * 4_194_304.0;
+    // A border outside the picture is as good anywhere outside.
+    let border = border.clamp(-reach[axis] - 1.0, reach[axis] + 1.0);
+    if reach[axis] + 2.0 > room {
+        return None;
+    }
+    let sign = if step.rising { 1.0 } else { -1.0 };
+    let mut form = [0.0; 3];
+    form[axis] = sign as f32;
+    form[2] = (-sign * border) as f32;
+    Some((form, (screen.lattice / 8.0) as f32))
+}
+
+/// Whether f32 can hold the number with room to spare; 0 is as good as any small number.
+pub fn fits(value: f32) -> bool {
+    f64::from(value.abs()) <= LARGEST
+}

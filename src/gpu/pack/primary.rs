@@ -1,0 +1,262 @@
+//! What primary rays can hit, as forms over the pixel with literal error bounds: planes, rectangles, spheres.
+
+use super::{Plane, Rectangle, Sphere, SphereHit};
+use crate::gpu::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
+use crate::prepare::{self, Camera};
+use crate::real::{Bounded, Real, V3};
+
+fn number(value: f64) -> Bounded {
+    Bounded::exact(value)
+}
+
+/// A form over (W.x, W.y, 1) as one over (X, Y, 1), the pixel from the camera's anchor.
+fn over_pixels(camera: &Camera<Bounded>, form: &[Bounded; 3]) -> [Bounded; 3] {
+    [
+        form[0] * camera.step[0],
+        form[1] * camera.step[1],
+        form[0] * camera.offset[0] + form[1] * camera.offset[1] + form[2],
+    ]
+}
+
+/// The z ≤ τ rule of a plane; where it always holds, a form that is 1.
+fn front(camera: &Camera<Bounded>, plane: &prepare::Plane<Bounded>, screen: &Screen) -> Form<3> {
+    let Some(form) = plane.front else {
+        return ([0.0, 0.0, 1.0], 0.0);
+    };
+    if let Some(exact) = plane
+        .front_step
+        .as_ref()
+        .and_then(|s| step(s, camera.anchor, screen))
+    {
+        return exact;
+    }
+    // It is given over (x, y, 1).
+    let [x, y] = camera.anchor.map(|a| number(f64::from(a)));
+    let moved = [form[0], form[1], form[2] + form[0] * x + form[1] * y];
+    linear(moved, screen.reach(camera.anchor), screen)
+}
+
+pub(super) fn plane(
+    camera: &Camera<Bounded>,
+    plane: &prepare::Plane<Bounded>,
+    screen: &Screen,
+    group: u32,
+) -> Plane {
+    let reach = screen.reach(camera.anchor);
+    let (inverse, inverse_error) = linear(over_pixels(camera, &plane.inverse), reach, screen);
+    let (front, front_error) = front(camera, plane, screen);
+    Plane {
+        inverse,
+        object: plane.object as u32,
+        front,
+        group,
+        inverse_error,
+        front_error,
+        unused: [0.0; 2],
+    }
+}
+
+pub(super) fn rectangle(
+    camera: &Camera<Bounded>,
+    plane: &prepare::Plane<Bounded>,
+    sides: &prepare::plane::Sides<Bounded>,
+    screen: &Screen,
+    group: u32,
+) -> Rectangle {
+    let reach = screen.reach(camera.anchor);
+    let base = self::plane(camera, plane, screen, group);
+    let q = plane.inverse;
+    let side = |i: usize| -> Form<3> {
+        if let Some(exact) = sides.steps[i]
+            .as_ref()
+            .and_then(|s| step(s, camera.anchor, screen))
+        {
+            return exact;
+        }
+        let p = sides.forms[i % 2];
+        let d = sides.dimensions[i % 2];
+        let form = if i < 2 {
+            p
+        } else {
+            [0, 1, 2].map(|k| d * q[k] - p[k])
+        };
+        linear(over_pixels(camera, &form), reach, screen)
+    };
+    let [a, b, c, d] = [side(0), side(1), side(2), side(3)];
+    Rectangle {
+        inverse: base.inverse,
+        object: base.object,
+        front: base.front,
+        group,
+        side_0: a.0,
+        inverse_error: base.inverse_error,
+        side_1: b.0,
+        front_error: base.front_error,
+        side_2: c.0,
+        unused_0: 0,
+        side_3: d.0,
+        unused_1: 0,
+        side_errors: [a.1, b.1, c.1, d.1],
+    }
+}
+
+/// A sphere's outline as a conic: the discriminant over (X², XY, Y², X, Y, 1) from `anchor`, and W and e·W over (X, Y, 1).
+struct Outline {
+    anchor: [i32; 2],
+    disc: [Bounded; 6],
+    along: [Bounded; 3],
+    /// W at the anchor.
+    w: V3<Bounded>,
+    /// The largest |X| and |Y| at which the sphere can be hit, or at which a pixel is.
+    reach: [f64; 2],
+}
+
+/// As for the camera's anchor: f32 holds integers to 2²⁴.
+const ANCHOR_LIMIT: f64 = 4_194_304.0;
+
+/// W at a pixel.
+fn ray(camera: &Camera<Bounded>, pixel: [i32; 2]) -> V3<Bounded> {
+    let axis = |i: usize| {
+        number(f64::from(pixel[i] - camera.anchor[i])) * camera.step[i] + camera.offset[i]
+    };
+    V3::new(axis(0), axis(1), -camera.distance)
+}
+
+fn along(camera: &Camera<Bounded>, e: V3<Bounded>, w: V3<Bounded>) -> [Bounded; 3] {
+    [e.x * camera.step[0], e.y * camera.step[1], e.dot(w)]
+}
+
+/// disc = (e·W)² − κ²·W·W, from the camera's anchor.
+fn wide(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>, screen: &Screen) -> Outline {
+    let w = ray(camera, camera.anchor);
+    let [a, b, c] = along(camera, sphere.toward, w);
+    let [sx, sy] = camera.step;
+    let k = sphere.kappa2;
+    let two = number(2.0);
+    Outline {
+        anchor: camera.anchor,
+        disc: [
+            a * a - k * sx * sx,
+            two * a * b,
+            b * b - k * sy * sy,
+            two * (a * c - k * sx * w.x),
+            two * (b * c - k * sy * w.y),
+            c * c - k * w.dot(w),
+        ],
+        along: [a, b, c],
+        w,
+        reach: screen.reach(camera.anchor),
+    }
+}
+
+/// disc = ρ²·W·W − e_z²·U·U − (e_x·U.y − e_y·U.x)², U = W − W_c, from the pixel `anchor`, at which U is `u`.
+fn small(
+    camera: &Camera<Bounded>,
+    sphere: &prepare::Sphere<Bounded>,
+    anchor: [i32; 2],
+    u: [Bounded; 2],
+) -> [Bounded; 6] {
+    let w = ray(camera, anchor);
+    let e = sphere.toward;
+    let [sx, sy] = camera.step;
+    let (rho2, z2) = (sphere.rho2, e.z * e.z);
+    let turn = e.x * u[1] - e.y * u[0];
+    let two = number(2.0);
+    [
+        sx * sx * (rho2 - z2 - e.y * e.y),
+        two * sx * sy * e.x * e.y,
+        sy * sy * (rho2 - z2 - e.x * e.x),
+        two * sx * (rho2 * w.x - z2 * u[0] + e.y * turn),
+        two * sy * (rho2 * w.y - z2 * u[1] - e.x * turn),
+        rho2 * w.dot(w) - z2 * (u[0] * u[0] + u[1] * u[1]) - turn * turn,
+    ]
+}
+
+/// The outline of a sphere that is seen as an ellipse, from a pixel next to its middle.
+fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Option<Outline> {
+    let seen = sphere.seen.as_ref()?;
+    let disc = small(camera, sphere, seen.anchor, seen.offset);
+    let [a, b, c, d, e, _] = disc.map(|c| c.value);
+    let determinant = 4.0 * a * c - b * b;
+    if !(a < 0.0 && determinant > 0.0) {
+        return None;
+    }
+    let middle = [
+        (b * e - 2.0 * c * d) / determinant,
+        (b * d - 2.0 * a * e) / determinant,
+    ];
+    let shift = middle.map(f64::round);
+    let place = [0, 1].map(|i| f64::from(seen.anchor[i]) + shift[i]);
+    if !place.iter().all(|p| p.abs() <= ANCHOR_LIMIT) {
+        return None;
+    }
+    let anchor = place.map(|p| p as i32);
+    let u = [0, 1].map(|i| seen.offset[i] + number(shift[i]) * camera.step[i]);
+    let disc = small(camera, sphere, anchor, u);
+    // The ellipse's box and a little more. With S = |a|X² + |c|Y² and μ = 1 − |b|/√(4ac) the form is at most
+    // |f| + L√S − μS, which is below −δS from S = S₀ on; and all its terms together are below 3S there.
+    let [a, b, c, d, e, f] = disc.map(|c| c.value.abs());
+    let mu = 1.0 - b / (2.0 * (a * c).sqrt());
+    let slope = (d * d / a + e * e / c).sqrt();
+    let delta = 0.1 * mu;
+    let root = (slope + (slope * slope + 4.0 * (mu - delta) * f).sqrt()) / (2.0 * (mu - delta));
+    let reach = [root / a.sqrt(), root / c.sqrt()].map(|r| r * (1.0 + 1e-9));
+    let [x, y] = reach;
+    let terms = a * x * x + b * x * y + c * y * y + d * x + e * y + f;
+    let w = ray(camera, anchor);
+    // Then no pixel outside the box is taken for one that may be hit (docs/NUMERICS.md).
+    (delta * root * root > 64.0 * U * terms && terms.is_finite()).then(|| Outline {
+        anchor,
+        disc,
+        along: along(camera, sphere.toward, w),
+        w,
+        reach,
+    })
+}
+
+/// The record of a sphere, and that of the hits on it if somebody asks for them.
+pub(super) fn sphere(
+    camera: &Camera<Bounded>,
+    sphere: &prepare::Sphere<Bounded>,
+    screen: &Screen,
+) -> (Sphere, SphereHit) {
+    let outline = ellipse(camera, sphere).unwrap_or_else(|| wide(camera, sphere, screen));
+    let (disc, disc_error) = quadratic(outline.disc, outline.reach, screen);
+    let (along, along_error) = linear(outline.along, outline.reach, screen);
+    let record = Sphere {
+        along,
+        gain: sphere.gain.value as f32,
+        square: [disc[0], disc[1], disc[2]],
+        object: sphere.object as u32,
+        affine: [disc[3], disc[4], disc[5]],
+        along_error,
+        anchor: outline.anchor,
+        disc_error,
+        unused: 0,
+    };
+    // (H − C)/(r·s) = (W − gain·along·C)/r − gain·C/r·√disc.
+    let radius = sphere.rho2.sqrt() * sphere.distance;
+    let inverse_radius = number(1.0) / radius;
+    let center = sphere.toward * (sphere.gain * sphere.distance * inverse_radius);
+    let part = |axis: usize| {
+        let mut form = outline.along.map(|c| -(c * center.axis(axis)));
+        if axis < 2 {
+            form[axis] = form[axis] + camera.step[axis] * inverse_radius;
+        }
+        form[2] = form[2] + outline.w.axis(axis) * inverse_radius;
+        linear(form, outline.reach, screen)
+    };
+    let (x, y, z) = (part(0), part(1), part(2));
+    let error = [x.1, y.1, z.1].map(f64::from);
+    let point = SphereHit {
+        form_x: x.0,
+        inverse_radius: inverse_radius.value as f32,
+        form_y: y.0,
+        form_error: up(error.iter().map(|e| e * e).sum::<f64>().sqrt() * (1.0 + 1e-9)),
+        form_z: z.0,
+        center_size: up(most(center.dot(center).sqrt())),
+        center: super::f32x3(center),
+        unused: 0,
+    };
+    (record, point)
+}
