@@ -14,6 +14,18 @@ pub fn color(stage: Stage) -> [u8; 3] {
     }
 }
 
+/// What a stage is, for people.
+pub fn meaning(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Gpu => "the GPU, which is sure",
+        Stage::Bounded => "f64 with error bounds",
+        Stage::Pairs => "pairs of f64 with error bounds",
+        Stage::Multiprecision => "intervals of many bits",
+        Stage::Exact => "exact arithmetic: it lies on a border exactly",
+        Stage::Presumed => "nothing: so near a border that it is presumed to lie on it",
+    }
+}
+
 /// The verdicts of a band, painted; none if the band has none.
 pub fn paint(band: &Band) -> Option<Band> {
     let verdicts = band.verdicts.as_ref()?;

@@ -1,9 +1,11 @@
 //! `plumb probe`: one pixel explained, from its rays to its bytes, by the reference tracer in f64.
 
+use std::fmt;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use anyhow::{Result, anyhow, bail};
+use plumb::certify::{Stage, verdict};
 use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Fault, Limits, Traced, Unwatched, ray_trace};
@@ -11,14 +13,15 @@ use plumb::jitter;
 use plumb::jitter::{Jitter, Sampling};
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Undecided, V3};
-use plumb::render::PixelFault;
+use plumb::render::{Backend, PixelFault, Report, Settings, render};
 use plumb::scene::Scene;
+use serde_json::json;
 
 use super::args::PictureOptions;
 use super::digits::{components, line, short, triple};
 use super::sight::Sight;
 use super::tree::Tree;
-use super::{Answer, say, source};
+use super::{Answer, SOFTWARE, cache, say, source};
 
 /// More samples than this are only counted.
 const SHOWN_SAMPLES: usize = 200;
@@ -31,9 +34,9 @@ EXAMPLES
                                               and the rays of one of them
 
 HOW TO READ IT
-  Give the options that the picture was rendered with: the last line is the
-  bytes that --backend cpu renders. The GPU computes in f32, and differs by one
-  here and there. All else is what the CPU's reference tracer has in f64.
+  Give the options that the picture was rendered with: the bytes are those of
+  the certified picture. All above them is what the CPU's reference tracer has
+  in f64.
 
   objects  What every object answered to the ray from the viewpoint; the closest
            hit is marked *. Why an object is missed is found in exact arithmetic;
@@ -59,7 +62,13 @@ HOW TO READ IT
 
   colour   The sum of what the rays add, or the mean of the samples; 1 is full
            brightness. Then 255 times that; then the bytes, which are cut off,
-           not rounded.";
+           not rounded.
+
+  decided by  What the CPU needed to be sure of the bytes: f64 with error bounds,
+           pairs of f64, intervals of many bits, exact arithmetic.
+
+  GPU      Whether the GPU is sure of them by itself, or in doubt; then the CPU
+           decides.";
 
 /// What `plumb probe` takes.
 #[derive(Debug, clap::Args)]
@@ -84,6 +93,9 @@ pub(crate) struct Args {
     /// Show everything: misses of more than 50 objects, more than 200 rays or samples, each of more than 50 lights
     #[arg(long)]
     all: bool,
+    /// Print the outcome alone, as JSON: value, bytes, what decided them, what the GPU says
+    #[arg(long, conflicts_with_all = ["all", "sample"])]
+    json: bool,
 }
 
 /// Explains the pixel.
@@ -114,6 +126,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     args.picture.check(&scene)?;
     let probe = Probe::new(&scene, args, x, y);
     let name = source::name(&args.scene);
+    if args.json {
+        say::data(&probe.json(&name)?)?;
+        return Ok(Answer::Yes);
+    }
     let mut ended = Ok(());
     say::stream(|to| {
         ended = probe.write(&name, to)?;
@@ -142,6 +158,26 @@ struct Probe<'a> {
     chosen: Option<u32>,
     x: u32,
     y: u32,
+}
+
+/// What the GPU says of a pixel.
+enum Verdict {
+    /// It is sure of these bytes.
+    Sure([u8; 3]),
+    /// It leaves the pixel to the CPU.
+    Doubtful,
+    /// It cannot be asked.
+    Unknown(String),
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sure([r, g, b]) => write!(f, "sure: {r} {g} {b}"),
+            Self::Doubtful => f.write_str("in doubt"),
+            Self::Unknown(why) => f.write_str(why),
+        }
+    }
 }
 
 /// How the explanation of a pixel ends: if not in a fault of writing, perhaps in one of the tracer's.
@@ -199,10 +235,11 @@ impl<'a> Probe<'a> {
         }
         // As rendering has them, whatever it does to be sure of them.
         let stages = Stages::new(self.scene, self.view);
-        let bytes = match stages.trace(&self.limits, sampling, self.x, self.y) {
-            Ok(decided) => decided.bytes,
+        let decided = match stages.trace(&self.limits, sampling, self.x, self.y) {
+            Ok(decided) => decided,
             Err(_) => return Ok(Err(Fault::TooManyRays)),
         };
+        let bytes = decided.bytes;
         let [r, g, b] = bytes;
         let doubt = match camera_setpix(color) {
             Ok(same) if same == bytes => String::new(),
@@ -210,7 +247,62 @@ impl<'a> Probe<'a> {
             Err(Undecided) => " (f64 alone cannot tell)".to_owned(),
         };
         line(to, "bytes", format!("{r} {g} {b}{doubt}"))?;
+        line(to, "decided by", verdict::meaning(decided.stage).to_owned())?;
+        line(to, "GPU", self.gpu().to_string())?;
         Ok(Ok(()))
+    }
+
+    /// The same in short, for programs.
+    fn json(&self, name: &str) -> Result<String> {
+        let [width, height] = self.scene.camera.pixeldim;
+        let row = self.jitter.row(self.y);
+        let sampling = self
+            .jitter
+            .pixel(row.as_deref(), width as usize, self.x as usize);
+        let stages = Stages::new(self.scene, self.view);
+        let decided = stages.trace(&self.limits, sampling, self.x, self.y)?;
+        let value = json!({
+            "software": SOFTWARE,
+            "scene": name,
+            "size": [width, height],
+            "pixel": [self.x, self.y],
+            "value": decided.value,
+            "bytes": decided.bytes,
+            "decided": decided.stage.name(),
+            "gpu": self.gpu().to_string(),
+        });
+        Ok(format!("{value:#}\n"))
+    }
+
+    /// What the GPU has to say of the pixel, asked for its row.
+    fn gpu(&self) -> Verdict {
+        let settings = Settings {
+            rows: Some(self.y..self.y + 1),
+            backend: Backend::Gpu,
+            verdicts: true,
+            cache: cache::folder(),
+            ..self.picture.settings()
+        };
+        let x = self.x as usize;
+        let mut verdict = None;
+        let rendered = render(self.scene, &settings, &mut |band| {
+            let stage = band.verdicts.as_ref().and_then(|stages| stages.get(x));
+            let bytes = band.rgb.as_chunks::<3>().0.get(x);
+            verdict = stage.copied().zip(bytes.copied());
+            Ok(())
+        });
+        match (rendered, verdict) {
+            (Err(error), _) => Verdict::Unknown(error.to_string()),
+            (
+                Ok(Report {
+                    revoked: Some(revoked),
+                    ..
+                }),
+                _,
+            ) => Verdict::Unknown(format!("not trusted: {revoked}")),
+            (_, Some((Stage::Gpu, bytes))) => Verdict::Sure(bytes),
+            _ => Verdict::Doubtful,
+        }
     }
 
     /// The offsets of the samples, if there are several.
