@@ -18,6 +18,9 @@ use crate::scene::Scene;
 /// others, and those stand side by side.
 const PIECE: usize = 16;
 
+/// So few pixels are decided by who asks: where the GPU is the CPU, waking another thread takes longer, measured 1 to 20 ms.
+const FEW: usize = 128;
+
 /// What it takes to trace a pixel of a scene on the CPU.
 pub struct Tracer<'a> {
     scene: &'a Scene,
@@ -64,40 +67,61 @@ impl<'a> Tracer<'a> {
 
     /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`.
     pub fn pixels(&self, top: u32, places: &[u32]) -> Result<(Vec<Decided>, Tally), PixelFault> {
-        let stages = self.stages();
         let width = self.width as u32;
         // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
-        let rows: Vec<&[u32]> = places.chunk_by(|a, b| a / width == b / width).collect();
-        let decided: Vec<(Vec<Decided>, Tally)> = rows
-            .into_par_iter()
-            .flat_map(|row| {
-                let y = top - row[0] / width;
-                let offsets = self.jitter.row(y).map(Arc::new);
-                row.par_chunks(PIECE)
-                    .map(move |piece| (piece, y, offsets.clone()))
+        let rows = places.chunk_by(|a, b| a / width == b / width);
+        let row = |row: &[u32]| {
+            let y = top - row[0] / width;
+            (y, self.jitter.row(y).map(Arc::new))
+        };
+        let decided: Vec<(Vec<Decided>, Tally)> = if places.len() <= FEW {
+            rows.map(|places| {
+                let (y, offsets) = row(places);
+                self.piece(y, offsets.as_deref().map(Vec::as_slice), places)
             })
-            .map(|(piece, y, offsets)| {
-                let offsets = offsets.as_deref().map(Vec::as_slice);
-                let mut tally = Tally::default();
-                let mut all = Vec::with_capacity(piece.len());
-                let mut before = Instant::now();
-                for place in piece {
-                    let x = place % width;
-                    let sampling = self.jitter.pixel(offsets, self.width, x as usize);
-                    let decided = stages.trace(&self.limits, sampling, x, y)?;
-                    let after = Instant::now();
-                    tally.decided(decided.stage, [x, y], after - before);
-                    before = after;
-                    all.push(decided);
-                }
-                Ok((all, tally))
-            })
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<_, _>>()?
+        } else {
+            rows.collect::<Vec<_>>()
+                .into_par_iter()
+                .flat_map(|places| {
+                    let (y, offsets) = row(places);
+                    places
+                        .par_chunks(PIECE)
+                        .map(move |piece| (y, offsets.clone(), piece))
+                })
+                .map(|(y, offsets, piece)| {
+                    self.piece(y, offsets.as_deref().map(Vec::as_slice), piece)
+                })
+                .collect::<Result<_, _>>()?
+        };
         let mut tally = Tally::default();
         let mut all = Vec::with_capacity(places.len());
         for (piece, counted) in decided {
             all.extend(piece);
             tally = tally.merge(counted);
+        }
+        Ok((all, tally))
+    }
+
+    /// Decides pixels of row `y`, whose samples have these offsets.
+    fn piece(
+        &self,
+        y: u32,
+        offsets: Option<&[[f64; 2]]>,
+        places: &[u32],
+    ) -> Result<(Vec<Decided>, Tally), PixelFault> {
+        let stages = self.stages();
+        let mut tally = Tally::default();
+        let mut all = Vec::with_capacity(places.len());
+        let mut before = Instant::now();
+        for place in places {
+            let x = place % self.width as u32;
+            let sampling = self.jitter.pixel(offsets, self.width, x as usize);
+            let decided = stages.trace(&self.limits, sampling, x, y)?;
+            let after = Instant::now();
+            tally.decided(decided.stage, [x, y], after - before);
+            before = after;
+            all.push(decided);
         }
         Ok((all, tally))
     }
