@@ -3,6 +3,9 @@
 #
 # Many tests run on a GPU, and fail without one; a software Vulkan driver will do. Where there is none, and this script
 # may (as root on Debian or Ubuntu), it installs one; elsewhere it says what to install.
+#
+# tests/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian package (32 MB,
+# nothing is installed) and kept beside what is built. PLUMB_SECOND_DRIVER names the JSON file of another one.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -80,6 +83,35 @@ if [ "$found" = "the CPU" ] && [ "$installed" = no ] && may_install; then
 fi
 if [ "$found" = "the CPU" ]; then
     stop "there is no GPU adapter: install your GPU's Vulkan driver, or the software one (Debian, Ubuntu: apt-get install $packages; Fedora: dnf install mesa-vulkan-drivers vulkan-loader; Arch: pacman -S vulkan-swrast)"
+fi
+
+# SwiftShader is made for browsers, and Debian has it in this package of one.
+package=chromium-common
+second=$target/second-driver
+fetch_second() {
+    say "fetching a second Vulkan driver: SwiftShader, out of Debian's $package"
+    (
+        mkdir "$scratch/deb" && cd "$scratch/deb" || exit
+        # A package list may be missing, or too old to be true.
+        apt-get download "$package" || { may_install && apt-get update && apt-get download "$package"; } || exit
+        dpkg-deb --fsys-tarfile ./*.deb | tar -x ./usr/lib/chromium/libvk_swiftshader.so ./usr/lib/chromium/vk_swiftshader_icd.json || exit
+        # Whole or not at all.
+        rm -rf "$second" && mkdir "$second.new" && mv usr/lib/chromium/* "$second.new" && mv "$second.new" "$second"
+    ) </dev/null >"$scratch/second" 2>&1
+}
+if [ -z "${PLUMB_SECOND_DRIVER:-}" ] && [ "$(uname)" = Linux ]; then
+    if [ ! -e "$second/vk_swiftshader_icd.json" ]; then
+        rm -rf "$second.new"
+        if ! command -v apt-get >/dev/null || ! command -v dpkg-deb >/dev/null; then
+            stop "there is no second Vulkan driver to compare with: name the JSON file of one in PLUMB_SECOND_DRIVER (SwiftShader's is vk_swiftshader_icd.json, in the folder of a Chromium)"
+        fi
+        fetch_second || {
+            cat "$scratch/second" >&2
+            stop "SwiftShader could not be fetched; name the JSON file of another Vulkan driver in PLUMB_SECOND_DRIVER"
+        }
+    fi
+    PLUMB_SECOND_DRIVER=$second/vk_swiftshader_icd.json
+    export PLUMB_SECOND_DRIVER
 fi
 
 say "testing on $found"
