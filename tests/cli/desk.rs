@@ -65,6 +65,11 @@ impl Desk {
             .args(args)
             .current_dir(self.folder.path())
             .env_remove("RUST_LOG")
+            // What the program remembers between runs is the tests' own.
+            .env(
+                "XDG_CACHE_HOME",
+                concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
+            )
             .stdin(Stdio::null());
         command
     }
