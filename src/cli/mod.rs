@@ -11,6 +11,7 @@ mod completions;
 mod digits;
 mod doctor;
 mod dump;
+mod outputs;
 mod picture;
 mod probe;
 mod progress;
@@ -18,7 +19,10 @@ mod render;
 mod say;
 mod sight;
 mod source;
+mod summary;
 mod tree;
+mod values;
+mod verdict;
 mod why;
 
 use std::env;
@@ -85,13 +89,16 @@ THE SCENE LANGUAGE
 
 EXIT CODES
   0   done
-  1   done, and the answer is no: pictures differ (compare), no adapter (doctor)
+  1   done, and the answer is no: pictures differ (compare), no adapter that can
+      be used or trusted (doctor), bytes presumed and not proven (render --strict)
   2   bad input or failure; what is wrong is on stderr
   130 ended by Ctrl-C or SIGTERM; no unfinished file remains
 
 ENVIRONMENT
-  RUST_LOG   what the GPU's library may say on stderr: RUST_LOG=wgpu=warn
-  NO_COLOR   no colours";
+  RUST_LOG        what the GPU's library may say on stderr: RUST_LOG=wgpu=warn
+  NO_COLOR        no colours
+  XDG_CACHE_HOME  where plumb/ remembers adapters that passed the self-test
+                  (~/.cache otherwise; safe to delete)";
 
 /// A ray tracer on the GPU for the scene language of a university course.
 #[derive(Debug, Parser)]

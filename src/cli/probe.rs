@@ -1,11 +1,10 @@
 //! `plumb probe`: one pixel explained, from its rays to its bytes, by the reference tracer in f64.
 
-use std::fmt;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use anyhow::{Result, anyhow, bail};
-use plumb::certify::{Stage, verdict};
+use plumb::certify::verdict::meaning;
 use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Fault, Limits, Traced, Unwatched, ray_trace};
@@ -13,7 +12,7 @@ use plumb::jitter;
 use plumb::jitter::{Jitter, Sampling};
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Undecided, V3};
-use plumb::render::{Backend, PixelFault, Report, Settings, render};
+use plumb::render::PixelFault;
 use plumb::scene::Scene;
 use serde_json::json;
 
@@ -21,7 +20,8 @@ use super::args::PictureOptions;
 use super::digits::{components, line, short, triple};
 use super::sight::Sight;
 use super::tree::Tree;
-use super::{Answer, SOFTWARE, cache, say, source};
+use super::verdict::{self, Verdict};
+use super::{Answer, SOFTWARE, say, source};
 
 /// More samples than this are only counted.
 const SHOWN_SAMPLES: usize = 200;
@@ -160,26 +160,6 @@ struct Probe<'a> {
     y: u32,
 }
 
-/// What the GPU says of a pixel.
-enum Verdict {
-    /// It is sure of these bytes.
-    Sure([u8; 3]),
-    /// It leaves the pixel to the CPU.
-    Doubtful,
-    /// It cannot be asked.
-    Unknown(String),
-}
-
-impl fmt::Display for Verdict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Sure([r, g, b]) => write!(f, "sure: {r} {g} {b}"),
-            Self::Doubtful => f.write_str("in doubt"),
-            Self::Unknown(why) => f.write_str(why),
-        }
-    }
-}
-
 /// How the explanation of a pixel ends: if not in a fault of writing, perhaps in one of the tracer's.
 type Ended = io::Result<Result<(), Fault>>;
 
@@ -247,7 +227,7 @@ impl<'a> Probe<'a> {
             Err(Undecided) => " (f64 alone cannot tell)".to_owned(),
         };
         line(to, "bytes", format!("{r} {g} {b}{doubt}"))?;
-        line(to, "decided by", verdict::meaning(decided.stage).to_owned())?;
+        line(to, "decided by", meaning(decided.stage).to_owned())?;
         line(to, "GPU", self.gpu().to_string())?;
         Ok(Ok(()))
     }
@@ -274,35 +254,9 @@ impl<'a> Probe<'a> {
         Ok(format!("{value:#}\n"))
     }
 
-    /// What the GPU has to say of the pixel, asked for its row.
+    /// What the GPU has to say of the pixel.
     fn gpu(&self) -> Verdict {
-        let settings = Settings {
-            rows: Some(self.y..self.y + 1),
-            backend: Backend::Gpu,
-            verdicts: true,
-            cache: cache::folder(),
-            ..self.picture.settings()
-        };
-        let x = self.x as usize;
-        let mut verdict = None;
-        let rendered = render(self.scene, &settings, &mut |band| {
-            let stage = band.verdicts.as_ref().and_then(|stages| stages.get(x));
-            let bytes = band.rgb.as_chunks::<3>().0.get(x);
-            verdict = stage.copied().zip(bytes.copied());
-            Ok(())
-        });
-        match (rendered, verdict) {
-            (Err(error), _) => Verdict::Unknown(error.to_string()),
-            (
-                Ok(Report {
-                    revoked: Some(revoked),
-                    ..
-                }),
-                _,
-            ) => Verdict::Unknown(format!("not trusted: {revoked}")),
-            (_, Some((Stage::Gpu, bytes))) => Verdict::Sure(bytes),
-            _ => Verdict::Doubtful,
-        }
+        verdict::ask(self.scene, &self.picture.settings(), self.x, self.y)
     }
 
     /// The offsets of the samples, if there are several.

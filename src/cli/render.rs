@@ -2,24 +2,24 @@
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
-use std::iter;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
-use plumb::certify::{Stage, verdict};
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::Stages;
-use plumb::image::{Finished, Format, Metadata, OutputError, Target};
+use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
-use plumb::render::{self, Backend, Band, PixelFault, Precision, Report, Settings};
+use plumb::render::{self, Backend, PixelFault, Report, Settings};
 use plumb::scene::{Scene, list_model, remarks};
 use serde::Serialize;
 
 use super::args::RenderOptions;
+use super::outputs::Outputs;
 use super::picture::Picture;
 use super::progress::Progress;
+use super::summary::{answer, summary, told};
 use super::{Answer, SOFTWARE, say, source};
 
 /// What `plumb render` takes.
@@ -30,7 +30,10 @@ EXAMPLES
   plumb render scene.txt -o big.png --size 3840x2160
   plumb render scene.txt -o values.exr   the values before they become bytes
   plumb render scene.txt -o - | display  PPM on stdout
-  plumb render scene.txt --rows 0..100   the lowest 100 rows
+  plumb render scene.txt --rows ..100    the lowest 100 rows
+  plumb render scene.txt --verdicts why.png --strict
+                                         what decided each pixel; exit 1 if any
+                                         byte is not proven
   plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt")]
 pub(crate) struct Args {
     /// The scene file; `-` is stdin
@@ -47,12 +50,6 @@ struct Job<'a> {
     file: Option<&'a Path>,
     scene: Scene,
     options: &'a RenderOptions,
-}
-
-/// The picture, and the one of its verdicts, on their way out.
-struct Outputs {
-    picture: Picture,
-    verdicts: Option<Picture>,
 }
 
 /// What `--json` prints.
@@ -91,43 +88,6 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         say::talk(&String::from_utf8_lossy(&listing));
     }
     job.run()
-}
-
-impl Outputs {
-    /// Writes the next rows.
-    fn write(&mut self, band: &Band) -> io::Result<()> {
-        if let Some(verdicts) = &mut self.verdicts
-            && let Some(painted) = verdict::paint(band)
-        {
-            verdicts.write(&painted).map_err(|source| {
-                io::Error::other(OutputError::Write {
-                    target: verdicts.target().clone(),
-                    source,
-                })
-            })?;
-        }
-        self.picture.write(band)
-    }
-
-    /// Whether nothing has reached its place before the end.
-    fn can_restart(&self) -> bool {
-        let mut all = iter::once(&self.picture).chain(&self.verdicts);
-        all.all(Picture::can_restart)
-    }
-
-    /// What an error of [`Outputs::write`] means.
-    fn failed(self, source: io::Error) -> anyhow::Error {
-        self.picture.failed(source)
-    }
-
-    /// Gives both their names.
-    fn finish(self) -> Result<Finished, OutputError> {
-        let finished = self.picture.finish()?;
-        if let Some(verdicts) = self.verdicts {
-            verdicts.finish()?;
-        }
-        Ok(finished)
-    }
 }
 
 impl<'a> Job<'a> {
@@ -258,16 +218,9 @@ impl<'a> Job<'a> {
         self.list(&settings, &report)?;
         self.report(&target, format, &report, &finished)?;
         if self.talks() && !self.options.json {
-            say::talk(&format!(
-                "{}\n",
-                self.summary(&target, &report, start.elapsed())
-            ));
+            say::talk(&format!("{}\n", summary(&target, &report, start.elapsed())));
         }
-        Ok(if self.options.strict && report.presumed > 0 {
-            Answer::No
-        } else {
-            Answer::Yes
-        })
+        Ok(answer(self.options.strict, &report))
     }
 
     /// Opens the picture, and the one of its verdicts if it was asked for.
@@ -340,6 +293,10 @@ impl<'a> Job<'a> {
                 picture.screen_tolerance.to_string(),
             ),
             entry("plumb:samples", picture.samples.to_string()),
+            entry(
+                "plumb:precision",
+                format!("{:?}", self.options.precision).to_lowercase(),
+            ),
         ];
         if picture.samples > 1 {
             entries.push(entry(
@@ -424,70 +381,4 @@ impl<'a> Job<'a> {
         }
         say::data(&text)
     }
-
-    /// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, pairs 5, tie 2`.
-    fn summary(&self, target: &Target, report: &Report, took: Duration) -> String {
-        let [start, end] = report.rows;
-        let mut size = format!("{}×{}", report.width, end - start);
-        if end - start != report.height {
-            size += &format!(" (rows {start}..{end} of {})", report.height);
-        }
-        let tracer = match (report.backend, &report.adapter) {
-            // Its driver, in brackets behind the name, is told by --json.
-            (Backend::Gpu, Some(adapter)) => {
-                format!("GPU {}", adapter.split(" [").next().unwrap_or(adapter))
-            }
-            _ => format!("CPU, {}", say::count(report.threads.unwrap_or(1), "thread")),
-        };
-        let seconds = took.as_secs_f64();
-        format!(
-            "{target}: {size}, {tracer}, {seconds:.2} s; {}",
-            decided(report)
-        )
-    }
-}
-
-/// What decided the pixels, in short.
-fn decided(report: &Report) -> String {
-    let stages = Stage::ALL[1..]
-        .iter()
-        .filter(|stage| report.decided.count(**stage) > 0)
-        .map(|stage| format!("{} {}", stage.name(), report.decided.count(*stage)))
-        .collect::<Vec<_>>()
-        .join(", ");
-    match (report.precision, report.backend, report.refined) {
-        (Precision::Fast, Backend::Gpu, 0) => "fast, not certified".into(),
-        (Precision::Fast, Backend::Gpu, refined) => {
-            format!("fast, not certified, but for {refined} on the CPU")
-        }
-        (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
-        (Precision::Certified, Backend::Gpu, _) => {
-            let percent = report.refined_percent;
-            format!("certified, {percent:.2} % doubtful: {stages}")
-        }
-        _ => format!("certified: {stages}"),
-    }
-}
-
-/// What has to be said of a rendering beside the summary.
-fn told(report: &Report) -> Vec<String> {
-    let mut lines: Vec<String> = report.fallback.iter().cloned().collect();
-    if let Some(revoked) = &report.revoked {
-        lines.push(format!(
-            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb doctor`"
-        ));
-    }
-    if report.presumed > 0 {
-        let at = |[x, y]: &[u32; 2]| format!("({x}, {y})");
-        let mut named: Vec<String> = report.presumed_at.iter().map(at).collect();
-        if report.presumed > named.len() as u64 {
-            named.push("…".into());
-        }
-        lines.push(format!(
-            "{} so near a border that it is presumed, not proven, to lie on it: {}",
-            say::count(report.presumed as usize, "pixel"),
-            named.join(", ")
-        ));
-    }
-    lines
 }

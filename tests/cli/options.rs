@@ -175,6 +175,8 @@ fn a_png_tells_what_changes_its_bytes_and_nothing_else() {
         "room.txt",
         "20x10",
         "1..9",
+        "plumb:precision",
+        "certified",
     ] {
         assert!(has(text), "{text}");
     }

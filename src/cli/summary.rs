@@ -1,0 +1,149 @@
+//! How a rendering went, in words.
+
+use std::time::Duration;
+
+use plumb::certify::Stage;
+use plumb::image::Target;
+use plumb::render::{Backend, Precision, Report};
+
+use super::{Answer, say};
+
+/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, pairs 5, tie 2`.
+pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> String {
+    let [start, end] = report.rows;
+    let mut size = format!("{}×{}", report.width, end - start);
+    if end - start != report.height {
+        size += &format!(" (rows {start}..{end} of {})", report.height);
+    }
+    let tracer = match (report.backend, &report.adapter) {
+        // Its driver, in brackets behind the name, is told by --json.
+        (Backend::Gpu, Some(adapter)) => {
+            format!("GPU {}", adapter.split(" [").next().unwrap_or(adapter))
+        }
+        _ => format!("CPU, {}", say::count(report.threads.unwrap_or(1), "thread")),
+    };
+    let seconds = took.as_secs_f64();
+    format!(
+        "{target}: {size}, {tracer}, {seconds:.2} s; {}",
+        decided(report)
+    )
+}
+
+/// What decided the pixels, in short.
+fn decided(report: &Report) -> String {
+    let stages = Stage::ALL[1..]
+        .iter()
+        .filter(|stage| report.decided.count(**stage) > 0)
+        .map(|stage| format!("{} {}", stage.name(), report.decided.count(*stage)))
+        .collect::<Vec<_>>()
+        .join(", ");
+    match (report.precision, report.backend, report.refined) {
+        (Precision::Fast, Backend::Gpu, 0) => "fast, not certified".into(),
+        (Precision::Fast, Backend::Gpu, refined) => {
+            format!("fast, not certified, but for {refined} on the CPU")
+        }
+        (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
+        (Precision::Certified, Backend::Gpu, _) => {
+            let percent = report.refined_percent;
+            format!("certified, {percent:.2} % doubtful: {stages}")
+        }
+        _ => format!("certified: {stages}"),
+    }
+}
+
+/// What has to be said of a rendering beside the summary.
+pub(crate) fn told(report: &Report) -> Vec<String> {
+    let mut lines: Vec<String> = report.fallback.iter().cloned().collect();
+    if let Some(revoked) = &report.revoked {
+        lines.push(format!(
+            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb doctor`"
+        ));
+    }
+    if report.presumed > 0 {
+        let at = |[x, y]: &[u32; 2]| format!("({x}, {y})");
+        let mut named: Vec<String> = report.presumed_at.iter().map(at).collect();
+        if report.presumed > named.len() as u64 {
+            named.push("…".into());
+        }
+        lines.push(format!(
+            "{} so near a border that it is presumed, not proven, to lie on it: {}",
+            say::count(report.presumed as usize, "pixel"),
+            named.join(", ")
+        ));
+    }
+    lines
+}
+
+/// The answer to a rendering: no, if every byte had to be proven and some were not.
+pub(crate) fn answer(strict: bool, report: &Report) -> Answer {
+    if strict && report.presumed > 0 {
+        Answer::No
+    } else {
+        Answer::Yes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use plumb::render::{Settings, render};
+    use plumb::scene::load_from;
+
+    use super::*;
+
+    fn report() -> Report {
+        let text = "camera c { pixeldim 2 1 worlddim 2 2 viewpoint 1 1 1 }";
+        let scene = load_from("scene", text.as_bytes(), Path::new(".")).unwrap();
+        let settings = Settings {
+            backend: Backend::Cpu,
+            ..Settings::default()
+        };
+        render(&scene, &settings, &mut |_| Ok(())).unwrap()
+    }
+
+    #[test]
+    fn presumed_pixels_are_named_and_strictly_the_answer_is_no() {
+        let mut report = report();
+        assert_eq!(told(&report), Vec::<String>::new());
+        assert_eq!(answer(true, &report), Answer::Yes);
+        report.presumed = 3;
+        report.presumed_at = vec![[7, 9], [8, 9]];
+        let told = told(&report).join("\n");
+        assert!(told.starts_with("3 pixels so near"), "{told}");
+        assert!(told.ends_with("(7, 9), (8, 9), …"), "{told}");
+        assert_eq!(answer(true, &report), Answer::No);
+        assert_eq!(answer(false, &report), Answer::Yes);
+    }
+
+    #[test]
+    fn a_revoked_certificate_is_told() {
+        let mut report = report();
+        report.revoked = Some("adapter X was sure of a pixel".into());
+        let told = told(&report).join("\n");
+        assert!(told.contains("adapter X was sure") && told.contains("the CPU rendered"));
+    }
+
+    #[test]
+    fn the_summary_says_how_many_were_doubtful() {
+        let mut report = report();
+        let took = Duration::from_millis(210);
+        let line = |report: &Report| summary(&Target::Stdout, report, took);
+        assert!(
+            line(&report).ends_with("0.21 s; certified: f64 2"),
+            "{}",
+            line(&report)
+        );
+        report.backend = Backend::Gpu;
+        report.adapter = Some("card [driver]".into());
+        report.refined = 2;
+        report.refined_percent = 0.256;
+        let text = line(&report);
+        assert!(
+            text.ends_with("GPU card, 0.21 s; certified, 0.26 % doubtful: f64 2"),
+            "{text}"
+        );
+        report.precision = Precision::Fast;
+        assert!(line(&report).contains("fast, not certified"));
+    }
+}

@@ -1,0 +1,195 @@
+//! What the values of options may be: every refusal says what is allowed.
+
+use std::ops::Range;
+
+use anyhow::{Result, bail};
+
+/// The most pixels a side, as `pixeldim` has it.
+const MOST_PIXELS: u32 = 1_000_000;
+/// More threads than any machine has; a typing error is told here, not by the system running out of them.
+const MOST_THREADS: usize = 4096;
+
+/// `640x480`.
+pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| {
+        text.parse::<u32>()
+            .ok()
+            .filter(|n| (1..=MOST_PIXELS).contains(n))
+    };
+    let sides = text
+        .split_once(['x', 'X', '×'])
+        .and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    sides.ok_or_else(|| "say columns x rows, each 1 to 1000000, like 640x480".to_owned())
+}
+
+/// Rows of a picture whose height is not known yet: from the first, or from 0; to before the last, or to the top.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Rows {
+    start: u32,
+    end: Option<u32>,
+}
+
+impl Rows {
+    /// The rows in a picture so high.
+    pub(crate) fn of(self, height: u32) -> Result<Range<u32>> {
+        let Self { start, end } = self;
+        if let Some(end) = end.filter(|end| *end > height) {
+            bail!(
+                "--rows {start}..{end}: the picture has {height} rows, so B is at most {height} (rows count from 0 at the bottom)"
+            );
+        }
+        if start >= height {
+            bail!(
+                "--rows {start}..: the picture has {height} rows, so A is at most {} (rows count from 0 at the bottom)",
+                height - 1
+            );
+        }
+        Ok(start..end.unwrap_or(height))
+    }
+}
+
+/// `0..120`, `..120`, `40..`.
+pub(crate) fn rows(text: &str) -> Result<Rows, String> {
+    let teach = || {
+        "say the first row and the row after the last, from 0 at the bottom, like 0..120; ..120 starts at the bottom, 40.. \
+         ends at the top"
+            .to_owned()
+    };
+    let (a, b) = text
+        .split_once("..")
+        .filter(|bounds| *bounds != ("", ""))
+        .ok_or_else(teach)?;
+    let bound = |text: &str| match text {
+        "" => Ok(None),
+        text => text.parse::<u32>().map(Some).map_err(|_| teach()),
+    };
+    let (start, end) = (bound(a)?.unwrap_or(0), bound(b)?);
+    if end.is_some_and(|end| start >= end) {
+        return Err(
+            "A must be less than B: A is the first row, B the row after the last".to_owned(),
+        );
+    }
+    Ok(Rows { start, end })
+}
+
+/// A finite number.
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "say a finite number, like 0.01".to_owned())
+}
+
+/// A length of a path: finite, not negative.
+pub(crate) fn path(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    let length = number.filter(|number| number.is_finite() && *number >= 0.0);
+    // Adding 0 makes −0 and 0 the same.
+    length
+        .map(|length| length + 0.0)
+        .ok_or_else(|| "say a length in world units, 0 or more, like 20".to_owned())
+}
+
+/// At least one thread.
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
+    let number = text
+        .parse::<usize>()
+        .ok()
+        .filter(|n| (1..=MOST_THREADS).contains(n));
+    number.ok_or_else(|| {
+        format!("say a number from 1 to {MOST_THREADS}; without --threads all cores are used")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert_eq!(size("1X1000000"), Ok([1, 1_000_000]));
+        for bad in [
+            "",
+            "640",
+            "640x",
+            "x480",
+            "0x1",
+            "1x0",
+            "1000001x1",
+            "-1x1",
+            "1x1x1",
+            "1 x 1",
+            "1e3x1",
+            "4294967297x1",
+        ] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn row_ranges() {
+        for (text, start, end) in [
+            ("0..120", 0, Some(120)),
+            ("..5", 0, Some(5)),
+            ("7..", 7, None),
+        ] {
+            assert_eq!(rows(text), Ok(Rows { start, end }));
+        }
+        for bad in [
+            "",
+            "..",
+            "..0",
+            "5..5",
+            "6..5",
+            "-1..5",
+            "0-5",
+            "0..=5",
+            "0..4294967296",
+        ] {
+            assert!(rows(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn rows_are_of_the_picture() {
+        let of = |text: &str| rows(text).unwrap().of(30).ok();
+        assert_eq!(of("..5"), Some(0..5));
+        assert_eq!(of("25.."), Some(25..30));
+        assert_eq!(of("0..30"), Some(0..30));
+        assert_eq!(of("0..31"), None);
+        assert_eq!(of("30.."), None);
+    }
+
+    #[test]
+    fn tolerances_are_finite() {
+        assert_eq!(tolerance("-0.5"), Ok(-0.5));
+        for bad in ["nan", "inf", "-inf", "1e999", "", "x"] {
+            assert!(tolerance(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn paths_are_finite_and_not_negative() {
+        for (text, length) in [
+            ("0", 0.0),
+            ("-0", 0.0),
+            ("20", 20.0),
+            ("1e6", 1e6),
+            ("1e300", 1e300),
+            ("0.5", 0.5),
+        ] {
+            assert_eq!(path(text), Ok(length));
+        }
+        assert!(path("-0").is_ok_and(f64::is_sign_positive));
+        for bad in ["-1", "nan", "inf", "1e999", "", "far"] {
+            assert!(path(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn threads_are_at_least_one() {
+        assert_eq!(threads("1"), Ok(1));
+        for bad in ["0", "-1", "", "5000", "1.5"] {
+            assert!(threads(bad).is_err(), "{bad}");
+        }
+    }
+}
