@@ -26,22 +26,19 @@ pub enum Stage {
     Gpu,
     /// f64 with error bounds.
     Bounded,
-    /// Pairs of f64 with error bounds.
-    Pairs,
-    /// Intervals of many bits.
+    /// Numbers of 128 bits and more, or exact ones that differ.
     Multiprecision,
     /// Exact arithmetic: the pixel lies on a border, which was proven.
     Exact,
-    /// Nothing: it lies so near a border that it was presumed to lie on it.
+    /// Nothing: numbers that agree to 1,024 bits are presumed to be equal; or the pixel was too much for exact ones.
     Presumed,
 }
 
 impl Stage {
     /// Every stage, in order; each stands at its own number.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 5] = [
         Self::Gpu,
         Self::Bounded,
-        Self::Pairs,
         Self::Multiprecision,
         Self::Exact,
         Self::Presumed,
@@ -52,7 +49,6 @@ impl Stage {
         match self {
             Self::Gpu => "gpu",
             Self::Bounded => "f64",
-            Self::Pairs => "pairs",
             Self::Multiprecision => "multiprecision",
             Self::Exact => "tie",
             Self::Presumed => "presumed",

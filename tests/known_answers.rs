@@ -7,12 +7,10 @@ mod common;
 use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Fault, Limits, Unwatched, ray_trace};
+use plumb::frame::Stage;
 use plumb::jitter::Sampling;
 use plumb::prepare::{Prepared, View};
 use plumb::real::Bounded;
-
-/// Pixels whose borders lie closer than pairs of f64 resolve: planes 5·10⁻³²⁴ apart.
-const BEYOND_PAIRS: &[(&str, [u32; 2])] = &[("plane_z_around_zero.txt", [4, 3])];
 
 /// The stated pixels of a scene file.
 fn stated(text: &str) -> Vec<[u32; 5]> {
@@ -59,12 +57,11 @@ fn stated_pixels_are_rendered() {
                 sure += 1;
                 assert_eq!(certain, want, "{name}: pixel ({x}, {y}) with bounds");
             }
-            if !BEYOND_PAIRS.contains(&(name.as_str(), [x, y])) {
-                let decided = stages
-                    .trace(&Limits::default(), Sampling::Once, x, y)
-                    .unwrap();
-                assert_eq!(decided.bytes, want, "{name}: pixel ({x}, {y})");
-            }
+            let decided = stages
+                .trace(&Limits::default(), Sampling::Once, x, y)
+                .unwrap();
+            assert_eq!(decided.bytes, want, "{name}: pixel ({x}, {y})");
+            assert_ne!(decided.stage, Stage::Presumed, "{name}: pixel ({x}, {y})");
         }
     }
     println!("{all} stated pixels, f64 is sure of {sure}");

@@ -28,6 +28,8 @@ pub struct Tracer<'a> {
     limits: Limits,
     jitter: &'a Jitter,
     width: usize,
+    /// Whether the values before quantising are wanted, to the last bit of f32.
+    values: bool,
     stages: OnceLock<Stages<'a>>,
 }
 
@@ -48,6 +50,7 @@ impl<'a> Tracer<'a> {
         limits: Limits,
         jitter: &'a Jitter,
         width: u32,
+        values: bool,
     ) -> Self {
         Self {
             scene,
@@ -55,6 +58,7 @@ impl<'a> Tracer<'a> {
             limits,
             jitter,
             width: width as usize,
+            values,
             stages: OnceLock::new(),
         }
     }
@@ -62,7 +66,7 @@ impl<'a> Tracer<'a> {
     /// Prepares the scene, if that was not done yet.
     pub fn stages(&self) -> &Stages<'a> {
         self.stages
-            .get_or_init(|| Stages::new(self.scene, self.view))
+            .get_or_init(|| Stages::new(self.scene, self.view).with_values(self.values))
     }
 
     /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`.

@@ -7,7 +7,6 @@ pub fn color(stage: Stage) -> [u8; 3] {
     match stage {
         Stage::Gpu => [40, 40, 40],
         Stage::Bounded => [60, 110, 200],
-        Stage::Pairs => [0, 170, 130],
         Stage::Multiprecision => [240, 228, 66],
         Stage::Exact => [240, 240, 240],
         Stage::Presumed => [230, 30, 30],
@@ -19,7 +18,6 @@ pub fn meaning(stage: Stage) -> &'static str {
     match stage {
         Stage::Gpu => "the GPU, which is sure",
         Stage::Bounded => "f64 with error bounds",
-        Stage::Pairs => "pairs of f64 with error bounds",
         Stage::Multiprecision => "intervals of many bits",
         Stage::Exact => "exact arithmetic: it lies on a border exactly",
         Stage::Presumed => "nothing: so near a border that it is presumed to lie on it",

@@ -181,7 +181,6 @@ A second picture of the same size, .png or .ppm, that shows what decided each pi
 
   dark grey  the GPU, which was sure
   blue       f64 with error bounds, on the CPU
-  green      pairs of f64
   yellow     intervals of many bits
   white      exact arithmetic: the pixel lies on a border exactly
   red        presumed: nearer to a border than 1,024 bits can tell"

@@ -65,7 +65,7 @@ HOW TO READ IT
            not rounded.
 
   decided by  What the CPU needed to be sure of the bytes: f64 with error bounds,
-           pairs of f64, intervals of many bits, exact arithmetic.
+           intervals of many bits, exact arithmetic.
 
   GPU      Whether the GPU is sure of them by itself, or in doubt; then the CPU
            decides.";

@@ -8,7 +8,7 @@ use plumb::render::{Backend, Precision, Report};
 
 use super::{Answer, say};
 
-/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, pairs 5, tie 2`.
+/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
 pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> String {
     let [start, end] = report.rows;
     let mut size = format!("{}×{}", report.width, end - start);

@@ -1,26 +1,60 @@
 //! Twin of `shaders/bvh.wgsl`: which of many spheres a ray may hit.
 
-use glam::DVec3;
+use crate::prepare::bvh::{Bvh, SLACK};
+use crate::real::{Bounded, Real, Undecided, V3};
 
-use crate::prepare::bvh::Bvh;
+/// The greatest f64 that a number may be: how far hits matter.
+pub fn at_most<R: Real>(number: R) -> f64 {
+    let Bounded { value, error } = number.near();
+    let most = (value + error) * SLACK;
+    if most.is_nan() { f64::INFINITY } else { most }
+}
+
+/// The greatest f64 that the inverse of a number > 0 may be.
+pub fn inverse_at_most<R: Real>(number: R) -> f64 {
+    let Bounded { value, error } = number.near();
+    let most = SLACK / (value - error * SLACK);
+    if most > 0.0 { most } else { f64::INFINITY }
+}
 
 /// Calls `test` with the index of each sphere of the tree that the ray from `base` along `dir` may hit, near boxes first,
 /// as long as they are entered no farther than at `reach`. `test` returns the new reach, in units of `dir`.
 ///
-/// The boxes are asked in f64, whatever the tracer's number type is: their padding is far wider than an f64's error, and
-/// keeps what is as far as `reach` in.
-pub fn bvh_hits<E>(
+/// The boxes are asked in f64, whatever the tracer's number type is, and the ray is known as well as that type knows it: a
+/// point at s on it is off by no more than base's error and s times that of `dir`. All that is in the tree is nearer than
+/// a distance that its root tells, so the boxes are widened by what that can be; if it is more than it is worth, the ray is
+/// `Undecided`.
+pub fn bvh_hits<R: Real>(
     bvh: &Bvh,
-    base: DVec3,
-    dir: DVec3,
+    base: V3<R>,
+    dir: V3<R>,
     mut reach: f64,
-    mut test: impl FnMut(usize) -> Result<f64, E>,
-) -> Result<(), E> {
+    mut test: impl FnMut(usize) -> Result<f64, Undecided>,
+) -> Result<(), Undecided> {
+    let base = [base.x, base.y, base.z].map(Real::near);
+    let dir = [dir.x, dir.y, dir.z].map(Real::near);
+    let farthest = bvh.size() + base.iter().map(|c| c.value.abs()).sum::<f64>();
+    let longest = dir
+        .iter()
+        .fold(0.0, |longest, c| c.value.abs().max(longest));
+    let mut slack = [0.0; 3];
+    for (slack, (base, dir)) in slack.iter_mut().zip(base.iter().zip(&dir)) {
+        // A component that is replaced below is off by twice as much as its replacement.
+        *slack = 1.01 * (base.error + farthest / longest * (dir.error + 2e-30));
+        if !(*slack < 1e-3 * farthest) {
+            return Err(Undecided);
+        }
+    }
     // A zero component becomes tiny: the ray stays in its slab or out of it.
-    let inverse = dir
-        .to_array()
-        .map(|c| 1.0 / if c.abs() < 1e-30 { 1e-30 } else { c });
-    let base = base.to_array();
+    let inverse = dir.map(|c| {
+        1.0 / if c.value.abs() < 1e-30 {
+            1e-30
+        } else {
+            c.value
+        }
+    });
+    let low = [0, 1, 2].map(|i| base[i].value + slack[i]);
+    let high = [0, 1, 2].map(|i| base[i].value - slack[i]);
     let mut stack = Vec::new();
     let mut index = 0;
     loop {
@@ -34,8 +68,8 @@ pub fn bvh_hits<E>(
         } else {
             let enters = |child: usize| {
                 bvh.nodes[child]
-                    .enters(base, inverse)
-                    .filter(|&near| near <= reach)
+                    .enters(low, high, inverse)
+                    .filter(|&near| near <= reach * SLACK)
             };
             next = match (enters(first), enters(first + 1)) {
                 (Some(left), Some(right)) => {

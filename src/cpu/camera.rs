@@ -38,16 +38,6 @@ pub fn inverse_distance<R: Real>(camera: &Camera<R>, ray: &Ray<R>, inverse: R) -
 /// The bytes of a pixel: floor(min(255, max(0, 255·v))).
 #[inline]
 pub fn camera_setpix<R: Real>(value: V3<R>) -> Result<[u8; 3], Undecided> {
-    let byte = |v: R| -> Result<u8, Undecided> {
-        let scaled = v * R::exact(255.0);
-        if (scaled - R::exact(255.0)).non_negative()? {
-            return Ok(255);
-        }
-        // Reflectivities are not negative, so neither is v: below 1 the byte is 0, however near to 0 that is.
-        if (R::exact(1.0) - scaled).positive()? {
-            return Ok(0);
-        }
-        Ok(scaled.floor()? as u8)
-    };
-    Ok([byte(value.x)?, byte(value.y)?, byte(value.z)?])
+    // Reflectivities are not negative, so neither is v.
+    Ok([value.x.byte()?, value.y.byte()?, value.z.byte()?])
 }

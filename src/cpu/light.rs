@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::bvh::at_most;
 use super::surface::{Point, getdiff, tile_material};
 use super::world::{Met, Range, Toward, hits_from};
 use crate::prepare::exact::two_to;
@@ -65,8 +66,8 @@ pub fn light_term<R: Real>(
             .level
             .binary_search(&number)
             .is_ok();
-    let c = d.dot(normal);
-    if level || !c.positive()? {
+    let across = toward.dot(normal);
+    if level || !across.positive()? {
         return Ok(Lit::FacesAway);
     }
     if !in_cone(light, d)? {
@@ -76,7 +77,8 @@ pub fn light_term<R: Real>(
         Ok(filter) => filter,
         Err(blocker) => return Ok(Lit::Shadowed(blocker)),
     };
-    let falloff = c / distance * R::exact(two_to(-scene.camera.scale));
+    // c/dist, with c the cosine.
+    let falloff = across / distance2 * R::exact(two_to(-scene.camera.scale));
     let diffuse = getdiff(scene, point)?.each(light.emissivity).each(filter) * falloff;
     let glint = glint(scene, light, point, normal, base, d)?;
     Ok(Lit::Lit {
@@ -106,10 +108,10 @@ fn shadow<R: Real>(
         skip: Some(world.groups[point.object]),
         light: Some(light),
     };
-    let reach = range
-        .light
-        .as_ref()
-        .map_or(f64::INFINITY, |light| light.distance.approx());
+    let reach = match &range.light {
+        Some(light) if world.bvh.is_some() => at_most(light.distance),
+        _ => f64::INFINITY,
+    };
     let opaque = |object: usize| !scene.palette[scene.materials[object]].clear;
     let mut met = Vec::new();
     let mut dark = None;
@@ -150,16 +152,30 @@ fn one_at_a_place<R: Real>(
     // Of coincident surfaces that is decided already.
     met.sort_unstable_by_key(|met| (world.groups[met.point.object], met.point.object));
     met.dedup_by_key(|met| world.groups[met.point.object]);
+    // Nearly in order, so that putting them in order exactly takes one comparison each.
     met.sort_by(|a, b| a.t.approx().total_cmp(&b.t.approx()));
     let mut kept: Vec<Met<R>> = Vec::with_capacity(met.len());
     for next in met {
-        match kept.last_mut() {
-            Some(last) if (next.t - last.t).sign()? == Ordering::Equal => {
-                if next.point.object < last.point.object {
-                    *last = next;
+        let mut place = kept.len();
+        loop {
+            let order = match place.checked_sub(1) {
+                Some(before) => (next.t - kept[before].t).sign()?,
+                None => Ordering::Greater,
+            };
+            match order {
+                Ordering::Less => place -= 1,
+                Ordering::Greater => {
+                    kept.insert(place, next);
+                    break;
+                }
+                Ordering::Equal => {
+                    let last = &mut kept[place - 1];
+                    if next.point.object < last.point.object {
+                        *last = next;
+                    }
+                    break;
                 }
             }
-            _ => kept.push(next),
         }
     }
     Ok(kept.into_iter().map(|met| met.point).collect())

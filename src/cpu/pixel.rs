@@ -1,14 +1,54 @@
 //! A pixel from its samples: the notes' `make_pixel`, in the number types that it takes to be sure of it.
+//!
+//! [`Stages`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that are
+//! exact in the end.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::camera::camera_setpix;
 use super::trace::{Fault, Limits, Unwatched, ray_trace};
 use crate::frame::{Decided, PixelFault, Stage};
 use crate::jitter::{self, Sampling};
+use crate::prepare::later::Laters;
 use crate::prepare::{Prepared, View};
-use crate::real::{Bounded, DoubleDouble, Real, V3};
+use crate::real::{Bounded, Effort, Lazy, Mark, Real, Undecided, V3};
 use crate::scene::Scene;
+
+/// Where a pixel's samples are, from its middle.
+fn offsets(sampling: Sampling<'_>, x: u32, y: u32) -> impl Iterator<Item = [f64; 2]> {
+    let (hashed, given): (u32, &[[f64; 2]]) = match sampling {
+        Sampling::Once => (0, &[[0.0; 2]]),
+        Sampling::Hash(samples) => (samples, &[]),
+        Sampling::Given(offsets) => (0, offsets),
+    };
+    (0..hashed)
+        .map(move |sample| jitter::hash(x, y, sample))
+        .chain(given.iter().copied())
+}
+
+/// The mean of a pixel's samples, of which `at` tells each.
+fn mean<R: Real, E>(
+    sampling: Sampling<'_>,
+    x: u32,
+    y: u32,
+    mut at: impl FnMut(f64, f64) -> Result<V3<R>, E>,
+) -> Result<V3<R>, E> {
+    let (px, py) = (f64::from(x), f64::from(y));
+    if let Sampling::Once = sampling {
+        return at(px, py);
+    }
+    let mut sum = V3::new(R::zero(), R::zero(), R::zero());
+    let mut count = 0_u32;
+    for [a, b] in offsets(sampling, x, y) {
+        sum = sum + at(px + a, py + b)?;
+        count += 1;
+    }
+    let n = R::exact(f64::from(count));
+    Ok(V3::new(sum.x / n, sum.y / n, sum.z / n))
+}
 
 /// The value of pixel (x, y), counted from the bottom left: the mean of its samples.
 pub fn make_pixel<R: Real>(
@@ -18,40 +58,42 @@ pub fn make_pixel<R: Real>(
     x: u32,
     y: u32,
 ) -> Result<V3<R>, Fault> {
-    let (px, py) = (f64::from(x), f64::from(y));
-    let at = |[a, b]: [f64; 2]| {
-        ray_trace(scene, limits, px + a, py + b, &mut Unwatched).map(|traced| traced.color)
-    };
-    let mut sum = V3::new(R::zero(), R::zero(), R::zero());
-    let count = match sampling {
-        Sampling::Once => return at([0.0, 0.0]),
-        Sampling::Hash(samples) => {
-            for sample in 0..samples {
-                sum = sum + at(jitter::hash(x, y, sample))?;
-            }
-            samples
-        }
-        Sampling::Given(offsets) => {
-            for offset in offsets {
-                sum = sum + at(*offset)?;
-            }
-            offsets.len() as u32
-        }
-    };
-    let n = R::exact(f64::from(count));
-    Ok(V3::new(sum.x / n, sum.y / n, sum.z / n))
+    mean(sampling, x, y, |x, y| color(scene, limits, x, y))
 }
 
-/// The scene on the CPU, in as many number types as it takes: f64 with error bounds decides nearly every pixel; where it
-/// cannot, pairs of f64 do; and plain f64 where those overflow.
+/// The colour of a sample.
+fn color<R: Real>(scene: &Prepared<R>, limits: &Limits, x: f64, y: f64) -> Result<V3<R>, Fault> {
+    ray_trace(scene, limits, x, y, &mut Unwatched).map(|traced| traced.color)
+}
+
+/// The scene on the CPU: f64 with error bounds decides nearly every pixel, and exact numbers decide the others. Only a pixel
+/// that is too much for these is presumed.
 #[derive(Debug)]
 pub struct Stages<'a> {
     scene: &'a Scene,
     view: View,
+    values: bool,
+    /// Tells the scenes of a thread's exact numbers apart.
+    number: u64,
     bounded: Prepared<Bounded>,
-    pairs: OnceLock<Prepared<DoubleDouble>>,
+    laters: OnceLock<Laters>,
     plain: OnceLock<Prepared<f64>>,
 }
+
+/// A scene in exact numbers: they are a thread's own.
+struct Own {
+    /// Which [`Stages`] it is of.
+    number: u64,
+    prepared: Rc<Prepared<Lazy>>,
+    /// Where its numbers end.
+    end: Mark,
+}
+
+thread_local! {
+    static OWN: RefCell<Option<Own>> = const { RefCell::new(None) };
+}
+
+static NUMBERS: AtomicU64 = AtomicU64::new(0);
 
 impl<'a> Stages<'a> {
     /// Prepares the scene.
@@ -59,13 +101,21 @@ impl<'a> Stages<'a> {
         Self {
             scene,
             view,
+            values: false,
+            number: NUMBERS.fetch_add(1, Ordering::Relaxed),
             bounded: Prepared::new(scene, view),
-            pairs: OnceLock::new(),
+            laters: OnceLock::new(),
             plain: OnceLock::new(),
         }
     }
 
-    /// Value and bytes of pixel (x, y).
+    /// Whether the values have to be the f32 nearest to the exact ones, as the bytes always are exact.
+    pub fn with_values(mut self, wanted: bool) -> Self {
+        self.values = wanted;
+        self
+    }
+
+    /// Pixel (x, y).
     pub fn trace(
         &self,
         limits: &Limits,
@@ -73,48 +123,157 @@ impl<'a> Stages<'a> {
         x: u32,
         y: u32,
     ) -> Result<Decided, PixelFault> {
-        let mut pixel = attempt(&self.bounded, limits, sampling, x, y);
-        let mut stage = Stage::Bounded;
-        if matches!(pixel, Err(Fault::Undecided)) {
-            let prepare = || Prepared::new(self.scene, self.view);
-            pixel = attempt(self.pairs.get_or_init(prepare), limits, sampling, x, y);
-            stage = Stage::Pairs;
+        let fault = PixelFault {
+            x,
+            y,
+            max_rays: limits.max_rays,
+        };
+        let quick = make_pixel(&self.bounded, limits, sampling, x, y)
+            .and_then(|v| Ok(self.decided(v, Stage::Bounded)?));
+        match quick {
+            Ok(decided) => return Ok(decided),
+            Err(Fault::TooManyRays) => return Err(fault),
+            Err(Fault::Undecided) => {}
         }
-        if matches!(pixel, Err(Fault::Undecided)) {
-            let prepare = || Prepared::new(self.scene, self.view);
-            pixel = attempt(self.plain.get_or_init(prepare), limits, sampling, x, y);
-            stage = Stage::Presumed;
+        if !matches!(sampling, Sampling::Once) {
+            // The samples that need it alone, and their mean in f64.
+            let mut stage = Stage::Bounded;
+            let v = mean(sampling, x, y, |x, y| {
+                let (v, hardest) = self.sample_bounded(limits, x, y)?;
+                stage = stage.max(hardest);
+                Ok(v)
+            });
+            match v.and_then(|v| Ok(self.decided(v, stage)?)) {
+                Ok(decided) => return Ok(decided),
+                Err(Fault::TooManyRays) => return Err(fault),
+                Err(Fault::Undecided) => {}
+            }
         }
-        match pixel {
-            Ok((value, bytes)) => Ok(Decided {
-                value,
-                bytes,
-                stage,
-            }),
-            // Not a number even so: such a pixel stays black.
-            Err(Fault::Undecided) => Ok(Decided {
-                value: [0.0; 3],
-                bytes: [0; 3],
-                stage,
-            }),
-            Err(Fault::TooManyRays) => Err(PixelFault {
+        let exact = self.exactly(|scene| {
+            let v = make_pixel(scene, limits, sampling, x, y)?;
+            Ok(self.decided(v, Stage::Bounded)?)
+        });
+        match exact {
+            (Ok(decided), stage) => Ok(Decided { stage, ..decided }),
+            (Err(Fault::TooManyRays), _) => Err(fault),
+            (Err(Fault::Undecided), _) => {
+                let v = make_pixel(self.plain(), limits, sampling, x, y);
+                match v.and_then(|v| Ok(self.decided(v, Stage::Presumed)?)) {
+                    Ok(decided) => Ok(decided),
+                    Err(Fault::TooManyRays) => Err(fault),
+                    // Not a number even so.
+                    Err(Fault::Undecided) => Ok(Decided {
+                        value: [0.0; 3],
+                        bytes: [0; 3],
+                        stage: Stage::Presumed,
+                    }),
+                }
+            }
+        }
+    }
+
+    /// The sample at (px, py), counted in pixels from the bottom left: its value, how far that may be off in each channel,
+    /// and the hardest that it took. Of a presumed sample nothing is certain, and its error is given as 0.
+    pub fn sample(
+        &self,
+        limits: &Limits,
+        px: f64,
+        py: f64,
+    ) -> Result<([f64; 3], [f64; 3], Stage), PixelFault> {
+        let [x, y] = [px, py].map(|p| p.round().max(0.0) as u32);
+        let (v, stage) = self
+            .sample_bounded(limits, px, py)
+            .map_err(|_| PixelFault {
                 x,
                 y,
                 max_rays: limits.max_rays,
-            }),
+            })?;
+        let channels = [v.x, v.y, v.z];
+        // The bound is kept low by its own roundings until it is used.
+        let error = channels.map(|c| c.error * Bounded::GROW);
+        Ok((channels.map(|c| c.value), error, stage))
+    }
+
+    /// The colour of a sample.
+    fn sample_bounded(
+        &self,
+        limits: &Limits,
+        x: f64,
+        y: f64,
+    ) -> Result<(V3<Bounded>, Stage), Fault> {
+        match color(&self.bounded, limits, x, y) {
+            Err(Fault::Undecided) => {}
+            decided => return Ok((decided?, Stage::Bounded)),
+        }
+        let exact = self.exactly(|scene| {
+            let v = color(scene, limits, x, y)?;
+            Ok(V3::new(v.x.bounded(), v.y.bounded(), v.z.bounded()))
+        });
+        match exact {
+            (Err(Fault::Undecided), _) => {
+                let v = match color(self.plain(), limits, x, y) {
+                    Err(Fault::Undecided) => V3::new(0.0, 0.0, 0.0),
+                    v => v?,
+                };
+                let v = V3::new(v.x.near(), v.y.near(), v.z.near());
+                Ok((v, Stage::Presumed))
+            }
+            (v, stage) => Ok((v?, stage)),
         }
     }
-}
 
-fn attempt<R: Real>(
-    scene: &Prepared<R>,
-    limits: &Limits,
-    sampling: Sampling<'_>,
-    x: u32,
-    y: u32,
-) -> Result<([f32; 3], [u8; 3]), Fault> {
-    let v = make_pixel(scene, limits, sampling, x, y)?;
-    let bytes = camera_setpix(v)?;
-    let v = v.approx();
-    Ok(([v.x as f32, v.y as f32, v.z as f32], bytes))
+    /// Does something with the scene in this thread's exact numbers, and tells what it took.
+    fn exactly<T>(
+        &self,
+        work: impl FnOnce(&Prepared<Lazy>) -> Result<T, Fault>,
+    ) -> (Result<T, Fault>, Stage) {
+        let own = OWN.with_borrow(|own| {
+            let own = own.as_ref().filter(|own| own.number == self.number)?;
+            Some((Rc::clone(&own.prepared), own.end))
+        });
+        let (prepared, end) = own.unwrap_or_else(|| {
+            let laters = self
+                .laters
+                .get_or_init(|| Laters::new(self.scene, &self.bounded));
+            Lazy::clear();
+            let prepared = Prepared::again(self.scene, self.view, &self.bounded, laters);
+            let (prepared, end) = (Rc::new(prepared), Lazy::mark());
+            OWN.set(Some(Own {
+                number: self.number,
+                prepared: Rc::clone(&prepared),
+                end,
+            }));
+            (prepared, end)
+        });
+        Lazy::effort();
+        let result = work(&prepared);
+        let stage = match Lazy::effort() {
+            Effort::Bounds | Effort::Precision => Stage::Multiprecision,
+            Effort::Proven => Stage::Exact,
+            Effort::Presumed => Stage::Presumed,
+        };
+        Lazy::release(end);
+        (result, stage)
+    }
+
+    /// The scene in f64, for what has to be presumed.
+    fn plain(&self) -> &Prepared<f64> {
+        self.plain
+            .get_or_init(|| Prepared::new(self.scene, self.view))
+    }
+
+    /// A pixel from its value.
+    fn decided<R: Real>(&self, v: V3<R>, stage: Stage) -> Result<Decided, Undecided> {
+        let bytes = camera_setpix(v)?;
+        let value = if self.values {
+            [v.x.nearest_f32()?, v.y.nearest_f32()?, v.z.nearest_f32()?]
+        } else {
+            v.approx().to_array().map(|c| c as f32)
+        };
+        Ok(Decided {
+            value,
+            bytes,
+            stage,
+        })
+    }
 }

@@ -41,11 +41,11 @@ pub fn plane_hits_from<R: Real>(
     dir: V3<R>,
     highest: R,
 ) -> Result<Option<(R, V3<R>)>, Undecided> {
-    let across = plane.normal.dot(dir);
+    let across = plane.direction.dot(dir);
     if across.sign()? == Ordering::Equal {
         return Ok(None);
     }
-    let t = (plane.offset - plane.normal.dot(base)) / across;
+    let t = (plane.constant - plane.direction.dot(base)) / across;
     if !t.positive()? {
         return Ok(None);
     }

@@ -1,5 +1,7 @@
 //! Twin of `shaders/surface.wgsl`: the reflectivity of an object at a hit.
 
+use std::cmp::Ordering;
+
 use super::procedural;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::prepare::{Prepared, Surface};
@@ -112,14 +114,13 @@ pub fn texel_place<R: Real>(
     let p = textured.extent.coordinates(position);
     let mut place = [0; 2];
     for (i, place) in place.iter_mut().enumerate() {
-        let index = (p[i] * textured.per_unit[i]).floor()?;
-        let size = f64::from(textured.size[i]);
-        let index = if textured.repeats {
-            index.rem_euclid(size)
+        let index = p[i] * textured.per_unit[i];
+        let size = textured.size[i];
+        *place = if textured.repeats {
+            index.floor_mod(size)? as usize
         } else {
-            index.clamp(0.0, size - 1.0)
+            (index.floor()?.max(0.0) as usize).min(size as usize - 1)
         };
-        *place = index as usize;
     }
     Ok(place)
 }
@@ -143,10 +144,19 @@ fn texel<R: Real>(
 ///
 /// By 1 + cos 2α = 2·cos²α: no acos, no cos, and never less than 0.
 pub fn color_wheel<R: Real>(x: R, y: R) -> Result<V3<R>, Undecided> {
-    // The larger component becomes ±1, so that squares neither overflow nor vanish.
-    let (ax, ay) = (x.abs()?, y.abs()?);
-    let larger = if (ax - ay).non_negative()? { ax } else { ay };
-    if !larger.positive()? {
+    // The larger component becomes 1, so that squares neither overflow nor vanish. Any that is not 0 would do: it is divided
+    // out again, its sign too.
+    let (larger, smaller) = if x.approx().abs() >= y.approx().abs() {
+        (x, y)
+    } else {
+        (y, x)
+    };
+    let larger = if larger.sign()? == Ordering::Equal {
+        smaller
+    } else {
+        larger
+    };
+    if larger.sign()? == Ordering::Equal {
         return Ok(V3::new(R::exact(2.0), R::exact(0.5), R::exact(0.5)));
     }
     let half = R::exact(0.5);

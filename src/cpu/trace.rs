@@ -1,6 +1,6 @@
 //! Twin of `shaders/trace.wgsl`: the closest hit of a primary ray, and the colour that a ray brings.
 
-use super::bvh::bvh_hits;
+use super::bvh::{bvh_hits, inverse_at_most};
 use super::camera::{Ray, camera_getdir, inverse_distance};
 use super::light::{Lit, light_term, normal_at};
 use super::plane::{on_plane, plane_hits};
@@ -48,53 +48,66 @@ pub fn find_closest_object<R: Real>(
 ) -> Result<Option<Hit<R>>, Undecided> {
     let mut closest: Option<Hit<R>> = None;
     for (index, plane) in scene.planes.iter().enumerate() {
-        if let Some(inverse) = plane_hits(plane, ray)? {
-            nearer(
-                &mut closest,
-                Hit {
-                    inverse,
-                    object: plane.object,
-                    index,
-                },
-            )?;
+        let mark = R::mark();
+        let hit = plane_hits(plane, ray)?.map(|inverse| Hit {
+            inverse,
+            object: plane.object,
+            index,
+        });
+        if !takes(&mut closest, hit)? {
+            R::release(mark);
         }
     }
+    let tree = scene.bvh.is_some();
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
-        let sphere = &scene.spheres[index];
-        if let Some(inverse) = sphere_hits(&scene.camera, sphere, ray)? {
-            nearer(
-                &mut closest,
-                Hit {
-                    inverse,
-                    object: sphere.object,
-                    index,
-                },
-            )?;
+        let mark = R::mark();
+        let made;
+        let sphere = match scene.spheres.get(index) {
+            Some(sphere) => sphere,
+            None => {
+                made = scene.make_sphere(index);
+                match &made {
+                    Some(sphere) => sphere,
+                    None => return Err(Undecided),
+                }
+            }
+        };
+        let hit = sphere_hits(&scene.camera, sphere, ray)?.map(|inverse| Hit {
+            inverse,
+            object: sphere.object,
+            index,
+        });
+        if !takes(&mut closest, hit)? {
+            R::release(mark);
         }
-        Ok(closest
-            .as_ref()
-            .map_or(f64::INFINITY, |hit| 1.0 / hit.inverse.approx()))
+        Ok(match &closest {
+            Some(hit) if tree => inverse_at_most(hit.inverse),
+            _ => f64::INFINITY,
+        })
     };
     let mut treated = 0;
     if let Some(bvh) = &scene.bvh {
         bvh_hits(
             bvh,
-            glam::DVec3::ZERO,
-            ray.w.approx(),
+            V3::new(R::zero(), R::zero(), R::zero()),
+            ray.w,
             f64::INFINITY,
             &mut sphere,
         )?;
         treated = bvh.len;
     }
-    for index in treated..scene.spheres.len() {
+    for index in treated..scene.sphere_count() {
         sphere(index)?;
     }
     Ok(closest)
 }
 
-/// Takes `hit` if it is nearer than `closest`, or as near and first in the file.
+/// Takes `hit`, if there is one, where it is nearer than `closest`, or as near and first in the file. Whether it did.
 #[inline]
-fn nearer<R: Real>(closest: &mut Option<Hit<R>>, hit: Hit<R>) -> Result<(), Undecided> {
+fn takes<R: Real>(closest: &mut Option<Hit<R>>, hit: Option<Hit<R>>) -> Result<bool, Undecided> {
+    let Some(hit) = hit else {
+        return Ok(false);
+    };
     let takes = match closest {
         None => true,
         Some(best) => {
@@ -105,7 +118,7 @@ fn nearer<R: Real>(closest: &mut Option<Hit<R>>, hit: Hit<R>) -> Result<(), Unde
     if takes {
         *closest = Some(hit);
     }
-    Ok(())
+    Ok(takes)
 }
 
 /// Where a primary ray hit.
@@ -122,11 +135,14 @@ pub fn locate<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Point
     }
     let mut position = ray.w * (R::exact(1.0) / hit.inverse);
     if !scene.is_plane[object] {
-        let sphere = &scene.spheres[hit.index];
+        let sphere = scene.spheres.get(hit.index).copied();
+        let sphere = sphere.or_else(|| scene.make_sphere(hit.index));
         return Point {
             object,
             position,
-            from_center: sphere_from_center(&scene.camera, sphere, ray, hit.inverse),
+            from_center: sphere.map_or(zero, |sphere| {
+                sphere_from_center(&scene.camera, &sphere, ray, hit.inverse)
+            }),
         };
     }
     if let Some(world) = &scene.world {
@@ -185,6 +201,7 @@ pub fn ray_trace<R: Real>(
                 total: R::zero(),
                 last: None,
                 weight: V3::new(one, one, one),
+                counts: [true; 3],
                 parent: 0,
                 kind: RayKind::Primary,
             };
@@ -222,7 +239,7 @@ impl<R: Real> Tree<'_, R> {
     fn grow(&mut self, limits: &Limits, watch: &mut impl Watch<R>) -> Result<(), Fault> {
         let longest = R::exact(limits.max_path) * R::exact(two_to(-self.scene.camera.scale));
         while let Some(ray) = self.waiting.pop() {
-            if self.saturated(limits.enough)? {
+            if self.saturated(limits.enough) {
                 watch.full(self.waiting.len() + 1);
                 return Ok(());
             }
@@ -247,14 +264,17 @@ impl<R: Real> Tree<'_, R> {
         Ok(())
     }
 
-    /// Whether the colour is at least `enough` in all channels, so that the other rays cannot change the bytes.
-    fn saturated(&self, enough: f64) -> Result<bool, Undecided> {
-        if self.color.approx().min_element() < enough {
-            return Ok(false);
+    /// Whether the colour is certainly at least `enough` in all channels, so that the other rays cannot change the bytes.
+    fn saturated(&self, enough: f64) -> bool {
+        let color = self.color;
+        // Three comparisons a ray would cost; what is certain is asked only where it looks so.
+        if !(color.approx().min_element() >= enough && enough.is_finite()) {
+            return false;
         }
         let enough = R::exact(enough);
-        let full = |c: R| (c - enough).non_negative();
-        Ok(full(self.color.x)? && full(self.color.y)? && full(self.color.z)?)
+        [color.x, color.y, color.z]
+            .into_iter()
+            .all(|c| (c - enough).non_negative() == Ok(true))
     }
 
     /// Adds what a ray that met `point` at distance `t` brings, and leaves the rays that go on from there.
@@ -290,38 +310,48 @@ impl<R: Real> Tree<'_, R> {
         watch.adds(share);
         self.color = self.color + share;
         let last = Some(world.groups[point.object]);
-        let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>| {
-            // A ray that counts for nothing need not be traced.
+        let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>, channels: [bool; 3]| {
+            let counts = [0, 1, 2].map(|i| ray.counts[i] && channels[i]);
             let branch = Branch {
                 base: point.position,
                 dir,
                 total,
                 last,
                 weight,
+                counts,
                 parent: number,
                 kind,
             };
-            if weight.approx() == glam::DVec3::ZERO {
+            // A ray that counts for nothing need not be traced.
+            if counts == [false; 3] {
                 watch.missed(number, &branch, Unmet::Weightless);
             } else {
                 self.waiting.push(branch);
             }
         };
         if material.mirror {
-            let along = normal.dot(-ray.dir);
-            let mirrored = normal * (along + along) + ray.dir;
+            let mirrored = if scene.is_plane[point.object] {
+                // With the normal as it is given there is no root in the direction.
+                let plane = &world.planes[world.places[point.object]];
+                ray.dir - plane.twice * plane.direction.dot(ray.dir)
+            } else {
+                let along = normal.dot(-ray.dir);
+                normal * (along + along) + ray.dir
+            };
             leave(
                 RayKind::Mirror,
                 mirrored,
                 ray.weight.each(material.specular),
+                material.mirrored,
             );
         }
         if material.clear {
-            let tint = scene.palette[super::surface::tile_material(scene, point)?].tint;
+            let tint = &scene.palette[super::surface::tile_material(scene, point)?];
             leave(
                 RayKind::Through,
                 ray.dir,
-                ray.weight.each(tint) * material.transparency,
+                ray.weight.each(tint.tint) * material.transparency,
+                tint.passed,
             );
         }
         Ok(())

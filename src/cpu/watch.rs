@@ -17,6 +17,8 @@ pub struct Branch<R> {
     pub last: Option<u32>,
     /// What its colour counts for.
     pub weight: V3<R>,
+    /// In which channels that is not 0.
+    pub counts: [bool; 3],
     /// Number of the ray that it came from; its own for the first.
     pub parent: u32,
     /// How it left.

@@ -1,6 +1,6 @@
 //! Twin of `shaders/world.wgsl`: what a ray from anywhere meets first.
 
-use super::bvh::bvh_hits;
+use super::bvh::{at_most, bvh_hits};
 use super::plane::plane_hits_from;
 use super::sphere::sphere_hits_from;
 use super::surface::Point;
@@ -43,6 +43,7 @@ pub fn closest_from<R: Real>(
     range: &Range<R>,
 ) -> Result<Option<Met<R>>, Undecided> {
     let mut closest: Option<Met<R>> = None;
+    let tree = world.bvh.is_some();
     hits_from(world, base, dir, range, &mut |met| {
         let takes = match &closest {
             None => true,
@@ -55,9 +56,10 @@ pub fn closest_from<R: Real>(
         if takes {
             closest = Some(met);
         }
-        Ok(closest
-            .as_ref()
-            .map_or(f64::INFINITY, |best| best.t.approx()))
+        Ok(match &closest {
+            Some(best) if tree => at_most(best.t),
+            _ => f64::INFINITY,
+        })
     })?;
     Ok(closest)
 }
@@ -77,11 +79,12 @@ pub fn hits_from<R: Real>(
             .as_ref()
             .map_or(Ok(true), |light| (light.distance - t).positive())
     };
-    let mut reach = range
-        .light
-        .as_ref()
-        .map_or(f64::INFINITY, |light| light.distance.approx());
+    let mut reach = match &range.light {
+        Some(light) if world.bvh.is_some() => at_most(light.distance),
+        _ => f64::INFINITY,
+    };
     for plane in &world.planes {
+        let mark = R::mark();
         if range.skip == Some(world.groups[plane.object]) || ends_at(range, &plane.level) {
             continue;
         }
@@ -100,11 +103,24 @@ pub fn hits_from<R: Real>(
             if reach < 0.0 {
                 return Ok(());
             }
+        } else {
+            R::release(mark);
         }
     }
     let after_planes = reach;
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
-        let sphere = &world.spheres[index];
+        let mark = R::mark();
+        let made;
+        let sphere = match world.spheres.get(index) {
+            Some(sphere) => sphere,
+            None => {
+                made = world.make_sphere(index);
+                match &made {
+                    Some(sphere) => sphere,
+                    None => return Err(Undecided),
+                }
+            }
+        };
         let skipped = range.skip == Some(world.groups[sphere.object]);
         // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
         let entry = |light: usize| {
@@ -133,15 +149,17 @@ pub fn hits_from<R: Real>(
                     from_center,
                 },
             })?;
+        } else {
+            R::release(mark);
         }
         Ok(reach)
     };
     let mut treated = 0;
     if let Some(bvh) = &world.bvh {
-        bvh_hits(bvh, base.approx(), dir.approx(), after_planes, &mut sphere)?;
+        bvh_hits(bvh, base, dir, after_planes, &mut sphere)?;
         treated = bvh.len;
     }
-    for index in treated..world.spheres.len() {
+    for index in treated..world.sphere_count() {
         sphere(index)?;
     }
     Ok(())

@@ -24,6 +24,15 @@ pub struct Bvh {
     pub len: usize,
 }
 
+impl Bvh {
+    /// No point of the boxes is farther than this from the viewpoint.
+    pub fn size(&self) -> f64 {
+        let root = &self.nodes[0];
+        let reach = |i: usize| f64::from(root.min[i].abs().max(root.max[i].abs()));
+        reach(0) + reach(1) + reach(2)
+    }
+}
+
 /// A box, from the viewpoint in units of 2^scale, and what is in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
@@ -48,7 +57,7 @@ const PAD: f64 = 1.0 / 524_288.0;
 const REACH: f64 = 1e17;
 
 /// A slab test in f64 errs by a few 2⁻⁵³ of its distances.
-const SLACK: f64 = 1.0 + 1e-12;
+pub const SLACK: f64 = 1.0 + 1e-12;
 
 struct Boxed(Aabb);
 
@@ -148,14 +157,15 @@ fn depth(nodes: &[Node]) -> usize {
 }
 
 impl Node {
-    /// Where the ray from `base` along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
-    /// components. The slack covers the roundings of the test itself, which are relative.
-    pub fn enters(&self, base: [f64; 3], inverse: [f64; 3]) -> Option<f64> {
+    /// Where the ray from a base along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
+    /// components, and the base lies between `high` and `low`: the box is widened by their difference. The slack covers the
+    /// roundings of the test itself, which are relative.
+    pub fn enters(&self, low: [f64; 3], high: [f64; 3], inverse: [f64; 3]) -> Option<f64> {
         let mut near = 0.0_f64;
         let mut far = f64::INFINITY;
-        for (((min, max), base), inverse) in self.min.iter().zip(&self.max).zip(base).zip(inverse) {
-            let a = (f64::from(*min) - base) * inverse;
-            let b = (f64::from(*max) - base) * inverse;
+        for i in 0..3 {
+            let a = (f64::from(self.min[i]) - low[i]) * inverse[i];
+            let b = (f64::from(self.max[i]) - high[i]) * inverse[i];
             near = near.max(a.min(b));
             far = far.min(a.max(b));
         }

@@ -19,6 +19,10 @@ pub struct Material<R> {
     pub transparency: R,
     /// What tints light that goes through: K/max(K), K the diffuse reflectivity; white where that is black.
     pub tint: V3<R>,
+    /// Which channels of the mirror image count for anything.
+    pub mirrored: [bool; 3],
+    /// The same of what comes through.
+    pub passed: [bool; 3],
     /// Whether any light goes through.
     pub clear: bool,
     /// Whether there is a mirror image.
@@ -44,6 +48,11 @@ impl<R: Real> Material<R> {
             shininess: material.shininess,
             transparency: R::exact(material.transparency),
             tint,
+            mirrored: material.specular.to_array().map(|c| c > 0.0),
+            passed: material
+                .diffuse
+                .to_array()
+                .map(|c| c > 0.0 || largest <= 0.0),
             clear: material.transparency != 0.0,
             mirror: material.specular.max_element() > 0.0,
         }

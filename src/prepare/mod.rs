@@ -11,6 +11,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod exact;
+pub mod later;
 pub mod material;
 pub mod plane;
 pub mod sphere;
@@ -20,6 +21,7 @@ pub mod world;
 use std::sync::Arc;
 
 use bvh::Bvh;
+use later::{Later, Laters};
 
 use crate::real::Real;
 use crate::scene::{Scene, Shape, Texels};
@@ -67,13 +69,15 @@ pub struct Prepared<R> {
     /// The spheres that a primary ray can hit: those of the tree in its order, then the others in file order.
     pub spheres: Vec<Sphere<R>>,
     /// The tree over the spheres seen small, if there are many.
-    pub bvh: Option<Bvh>,
+    pub bvh: Option<Arc<Bvh>>,
+    /// What spheres are made from that are not in `spheres`.
+    pub later: Option<Later>,
     /// One for each object of the scene: what it looks like.
     pub surfaces: Vec<Surface<R>>,
     /// One for each object of the scene: index of its material.
-    pub materials: Vec<usize>,
+    pub materials: Arc<Vec<usize>>,
     /// One for each object of the scene: whether it is a plane, not a sphere.
-    pub is_plane: Vec<bool>,
+    pub is_plane: Arc<Vec<bool>>,
     /// Whether some object lets light through.
     pub any_clear: bool,
     /// The materials of the scene.
@@ -88,6 +92,48 @@ impl<R: Real> Prepared<R> {
     /// Prepares `scene`.
     pub fn new(scene: &Scene, view: impl Into<View>) -> Self {
         let view = view.into();
+        let mut prepared = Self::of(scene, view, true);
+        prepared.bvh =
+            bvh::build(&mut prepared.spheres, |sphere| sphere.seen.is_some()).map(Arc::new);
+        let materials = scene.objects.iter().map(|object| object.material);
+        let is_plane = scene
+            .objects
+            .iter()
+            .map(|object| matches!(object.shape, Shape::Plane { .. }));
+        prepared.materials = Arc::new(materials.collect());
+        prepared.is_plane = Arc::new(is_plane.collect());
+        let scale = prepared.camera.scale;
+        let lit = !scene.lights.is_empty();
+        prepared.world = lit.then(|| World::new(scene, scale, view.screen_tolerance));
+        prepared
+    }
+
+    /// Prepares a scene that has been prepared before in another number type, and shares with that what is no number. Where
+    /// `laters` has spheres, they are made when they are asked for.
+    pub fn again<S: Real>(
+        scene: &Scene,
+        view: View,
+        before: &Prepared<S>,
+        laters: &Laters,
+    ) -> Self {
+        let prepared = Self::of(scene, view, laters.primary.is_none());
+        let world = before.world.as_ref().map(|world| {
+            let scale = prepared.camera.scale;
+            let later = laters.world.as_ref();
+            World::again(scene, scale, view.screen_tolerance, world, later)
+        });
+        Self {
+            bvh: before.bvh.clone(),
+            later: laters.primary.clone(),
+            materials: Arc::clone(&before.materials),
+            is_plane: Arc::clone(&before.is_plane),
+            world,
+            ..prepared
+        }
+    }
+
+    /// The scene without tree, world and tables; spheres in file order if they are wanted.
+    fn of(scene: &Scene, view: View, with_spheres: bool) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
         let mut spheres = Vec::new();
@@ -108,19 +154,14 @@ impl<R: Real> Prepared<R> {
                         extent.as_ref(),
                     ));
                 }
-                Shape::Sphere { center, radius } => {
-                    spheres.extend(Sphere::new(&scene.camera, &camera, index, center, radius));
+                Shape::Sphere { center, radius } if with_spheres => {
+                    let viewpoint = scene.camera.viewpoint;
+                    spheres.extend(Sphere::new(viewpoint, &camera, index, center, radius));
                 }
+                Shape::Sphere { .. } => {}
             }
             surfaces.push(Surface::new(scene, object));
         }
-        let bvh = bvh::build(&mut spheres, |sphere| sphere.seen.is_some());
-        let materials = scene.objects.iter().map(|object| object.material).collect();
-        let is_plane = scene
-            .objects
-            .iter()
-            .map(|object| matches!(object.shape, Shape::Plane { .. }))
-            .collect();
         let any_clear = scene
             .objects
             .iter()
@@ -131,20 +172,19 @@ impl<R: Real> Prepared<R> {
             .iter()
             .map(|texture| Arc::clone(&texture.texels))
             .collect();
-        let lit = !scene.lights.is_empty();
-        let world = lit.then(|| World::new(scene, camera.scale, view.screen_tolerance));
         Self {
             camera,
             planes,
             spheres,
-            bvh,
+            bvh: None,
+            later: None,
             surfaces,
-            materials,
-            is_plane,
+            materials: Arc::default(),
+            is_plane: Arc::default(),
             any_clear,
             palette,
             textures,
-            world,
+            world: None,
         }
     }
 }

@@ -5,7 +5,6 @@ use glam::DVec3;
 use super::Camera;
 use super::exact::{Ratio, dot, ratio, ratio3, sub};
 use crate::real::{Real, V3};
-use crate::scene;
 
 /// A sphere that a primary ray can hit: the viewpoint is outside it.
 ///
@@ -51,29 +50,31 @@ impl<R: Real> Sphere<R> {
     /// Prepares a sphere; None if no ray through the screen can hit it: the viewpoint is in or on it (a ray that starts
     /// inside misses), or all of it lies behind.
     pub fn new(
-        camera: &scene::Camera,
+        viewpoint: DVec3,
         prepared: &Camera<R>,
         object: usize,
         center: DVec3,
         radius: f64,
     ) -> Option<Self> {
         // All rays go towards negative z. Subtraction rounds monotonically, so this is exact enough to drop a sphere.
-        if center.z - radius > camera.viewpoint.z {
+        if center.z - radius > viewpoint.z {
             return None;
         }
         let unit = R::exact(super::exact::two_to(-prepared.scale));
-        let c = (V3::exact(center) - V3::exact(camera.viewpoint)) * unit;
+        let c = (V3::exact(center) - V3::exact(viewpoint)) * unit;
         let r = R::exact(radius) * unit;
         let c2 = c.dot(c);
         let mut power = c2 - r * r;
         // Near the surface the difference of squares has lost its bits, its sign first: there it is taken exactly.
-        if power.approx().abs() <= 1e-6 * c2.approx() {
-            let exact = power_of_viewpoint(camera.viewpoint, center, radius);
+        // Likewise where squares are out of f64's range, and nothing is larger than anything.
+        let (near, far) = (power.approx(), c2.approx());
+        if !(near.abs() > 1e-6 * far && near.is_finite() && far.is_finite()) {
+            let exact = power_of_viewpoint(viewpoint, center, radius);
             if exact <= Ratio::ZERO {
                 return None;
             }
             power = R::ratio(&(exact / super::exact::power_of_two(2 * prepared.scale)));
-        } else if power.approx() < 0.0 {
+        } else if near < 0.0 {
             return None;
         }
         let distance = c2.sqrt();

@@ -220,6 +220,7 @@ impl<R: Real> TileIndex<R> {
         let index = (view + R::exact(TILE_SHIFT)) / d;
         // Any whole number near the index will do: what is left need not lie in [0, 1).
         let whole = index.approx().floor();
+        let whole = if whole.is_finite() { whole } else { 0.0 };
         Self {
             per_unit: R::exact(super::exact::two_to(scale)) / d,
             fraction: index - R::exact(whole),
@@ -229,8 +230,7 @@ impl<R: Real> TileIndex<R> {
 
     /// Whether the index at position `p` is odd (1) or even (0).
     pub fn odd(&self, p: R) -> Result<u32, crate::real::Undecided> {
-        let index = (p * self.per_unit + self.fraction).floor()? + f64::from(self.parity);
-        Ok((index - 2.0 * (index * 0.5).floor()) as u32)
+        Ok((p * self.per_unit + self.fraction).floor_mod(2)? ^ self.parity)
     }
 }
 

@@ -4,12 +4,14 @@
 //! decided here, exactly: which of them coincide, and which lights lie on them.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use dashu_ratio::RBig;
 use glam::DVec3;
 
 use super::bvh::{self, Bounds, Bvh};
 use super::exact::{dot, is_zero, power_of_two, ratio, ratio3, two_to};
+use super::later::Later;
 use super::{Light, plane::Extent};
 use crate::real::{Real, V3};
 use crate::scene::{Scene, Shape};
@@ -22,14 +24,16 @@ pub struct World<R> {
     /// All spheres: those of the tree in its order, then the others in file order.
     pub spheres: Vec<WorldSphere<R>>,
     /// The tree over the spheres, if they are many.
-    pub bvh: Option<Bvh>,
+    pub bvh: Option<Arc<Bvh>>,
+    /// What spheres are made from that are not in `spheres`.
+    pub later: Option<Later>,
     /// The lights, in file order.
     pub lights: Vec<Light<R>>,
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
     /// equal spheres: from one of them the other is at t = 0, a miss.
-    pub groups: Vec<u32>,
+    pub groups: Arc<Vec<u32>>,
     /// For each object: its place in `planes` or `spheres`.
-    pub places: Vec<usize>,
+    pub places: Arc<Vec<usize>>,
     /// The rule H.z ≤ τ for positions.
     pub highest: R,
 }
@@ -43,6 +47,12 @@ pub struct WorldPlane<R> {
     pub normal: V3<R>,
     /// normal · P for the points P of the plane.
     pub offset: R,
+    /// The normal divided by its largest component: rational.
+    pub direction: V3<R>,
+    /// direction · P for the points P of the plane.
+    pub constant: R,
+    /// 2·direction/(direction · direction): what a mirror image needs.
+    pub twice: V3<R>,
     /// If the plane is perpendicular to an axis: which, and the coordinate that all its points share.
     pub own: Option<(usize, R)>,
     /// Its rectangle, if it has one.
@@ -77,19 +87,66 @@ impl<R: Real> Bounds for WorldSphere<R> {
 impl<R: Real> World<R> {
     /// Prepares a lit scene.
     pub fn new(scene: &Scene, scale: i32, screen_tolerance: f64) -> Self {
+        let groups = Arc::new(groups(scene));
+        let mut world = Self::of(scene, scale, screen_tolerance, groups, Arc::default(), true);
+        world.bvh = bvh::build(&mut world.spheres, |_| true).map(Arc::new);
+        let mut places = vec![0; scene.objects.len()];
+        for (place, plane) in world.planes.iter().enumerate() {
+            places[plane.object] = place;
+        }
+        for (place, sphere) in world.spheres.iter().enumerate() {
+            places[sphere.object] = place;
+        }
+        world.places = Arc::new(places);
+        world
+    }
+
+    /// Prepares a lit scene that has been prepared before in another number type; with `later`, spheres one by one.
+    pub(super) fn again<S: Real>(
+        scene: &Scene,
+        scale: i32,
+        screen_tolerance: f64,
+        before: &World<S>,
+        later: Option<&Later>,
+    ) -> Self {
+        let (groups, places) = (Arc::clone(&before.groups), Arc::clone(&before.places));
+        Self {
+            bvh: before.bvh.clone(),
+            later: later.cloned(),
+            ..Self::of(
+                scene,
+                scale,
+                screen_tolerance,
+                groups,
+                places,
+                later.is_none(),
+            )
+        }
+    }
+
+    /// The world without its tree, spheres in file order if they are wanted.
+    fn of(
+        scene: &Scene,
+        scale: i32,
+        screen_tolerance: f64,
+        groups: Arc<Vec<u32>>,
+        places: Arc<Vec<usize>>,
+        spheres: bool,
+    ) -> Self {
         let view = V3::exact(scene.camera.viewpoint);
         let unit = R::exact(two_to(-scale));
         let mut world = Self {
             planes: Vec::new(),
             spheres: Vec::new(),
             bvh: None,
+            later: None,
             lights: scene
                 .lights
                 .iter()
                 .map(|light| Light::new(view, scale, light))
                 .collect(),
-            groups: groups(scene),
-            places: vec![0; scene.objects.len()],
+            groups,
+            places,
             highest: R::ratio(
                 &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z))
                     / power_of_two(scale)),
@@ -108,20 +165,14 @@ impl<R: Real> World<R> {
                         .planes
                         .push(plane(scene, scale, object, normal, point, extent));
                 }
-                Shape::Sphere { center, radius } => world.spheres.push(WorldSphere {
+                Shape::Sphere { center, radius } if spheres => world.spheres.push(WorldSphere {
                     object,
                     center: (V3::exact(center) - view) * unit,
                     radius: R::exact(radius) * unit,
                     level: lights_on_sphere(scene, center, radius),
                 }),
+                Shape::Sphere { .. } => {}
             }
-        }
-        world.bvh = bvh::build(&mut world.spheres, |_| true);
-        for (place, plane) in world.planes.iter().enumerate() {
-            world.places[plane.object] = place;
-        }
-        for (place, sphere) in world.spheres.iter().enumerate() {
-            world.places[sphere.object] = place;
         }
         world
     }
@@ -162,6 +213,9 @@ fn plane<R: Real>(
             direction.z / length,
         ),
         offset: offset / length,
+        direction,
+        constant: offset,
+        twice: direction * (R::exact(2.0) / direction.dot(direction)),
         own: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
         extent,
         level: level.collect(),

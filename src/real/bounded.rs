@@ -1,49 +1,102 @@
 //! f64 with a running error bound: a [`Real`] that knows when f64 is too coarse.
 //!
-//! The bound is that of floating point to nearest: an operation's result r̂ differs from the exact result on its computed
-//! operands by at most u·|r̂|, u = 2⁻⁵³ (and by the smallest subnormal), and the operands' own errors are carried along to
-//! first order with their products included. The bound's own roundings, a few u for each operation, are covered when it is
-//! used: by a part in 10⁹, good for a million operations in a row. A NaN on either side decides nothing.
+//! The bound is that of floating point to nearest: a result r̂ differs from the exact result on its computed operands by at
+//! most u·|r̂|, u = 2⁻⁵³, and by half the smallest subnormal where it underflows; the operands' own errors are carried along.
+//! The bound is itself computed in f64. All its terms are ≥ 0, so that it is low by a part in 10¹⁵ or so for each of the
+//! operations behind it; wherever it is used it is made larger by a part in 10⁸, which is enough for ten million operations
+//! in a row. Nothing is decided by a NaN or an infinity. docs/NUMERICS.md, section 8, derives each bound.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use dashu_ratio::Relaxed as Ratio;
 
-use super::{Real, Undecided};
+use super::float::whole_below;
+use super::{Real, Undecided, lazy};
 
 /// A number within `error` of `value`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounded {
     /// The f64 result.
     pub value: f64,
-    /// How far the exact number may lie from it; infinite where nothing is known.
+    /// How far the exact number may lie from it, to a part in 10⁸; infinite where nothing is known.
     pub error: f64,
 }
 
 /// Unit roundoff of f64.
 const U: f64 = 1.0 / 9_007_199_254_740_992.0;
-/// What the roundings of the bound itself may add up to.
-const GROW: f64 = 1.0 + 1e-9;
-/// The smallest subnormal: what a result may lose where it underflows.
-const TINY: f64 = f64::from_bits(1);
+/// What underflow may take: half the smallest subnormal from the result, and from each of up to seven terms of the bound.
+const TINY: f64 = f64::from_bits(4);
 
 impl Bounded {
-    /// A computed value whose operands' errors contribute `carried`.
-    #[inline(always)]
-    fn rounded(value: f64, carried: f64) -> Self {
-        Self {
-            value,
-            error: carried + (U * value.abs() + TINY),
+    /// What the roundings of the bound itself may add up to: where a bound is used, it is multiplied by this.
+    pub const GROW: f64 = 1.0 + 1e-8;
+
+    /// Nothing is known.
+    const UNKNOWN: Self = Self {
+        value: 0.0,
+        error: f64::INFINITY,
+    };
+
+    /// The power with a whole exponent, by squaring.
+    fn whole_power(self, mut exponent: f64) -> Self {
+        let (mut result, mut square) = (Self::exact(1.0), self);
+        loop {
+            if exponent % 2.0 == 1.0 {
+                result = result * square;
+            }
+            exponent = (exponent / 2.0).floor();
+            if exponent == 0.0 {
+                return result;
+            }
+            square = square * square;
         }
     }
+
+    /// The power with an exponent in [0, 1), by a square root for each bit of it, until a root is so near to 1 that three
+    /// terms of the binomial series do for the rest.
+    fn part_power(self, mut exponent: f64) -> Self {
+        let one = Self::exact(1.0);
+        let mut result = one;
+        let mut root = self;
+        for _ in 0..64 {
+            if exponent == 0.0 {
+                return result;
+            }
+            let off = one - root;
+            if off.value.abs() + off.error < NEAR_ONE {
+                // (1 − ε)ˢ = 1 − sε − s(1 − s)/2·ε² − …, what is left out is at most 0.07·|ε|³ for 0 ≤ s ≤ 1.
+                let s = Self::exact(exponent);
+                let bend = s * (one - s) * Self::exact(0.5);
+                let mut rest = one - off * (s + bend * off);
+                let wide = off.value.abs() + off.error;
+                rest.error += 0.07 * wide * wide * wide;
+                return result * rest;
+            }
+            root = root.sqrt();
+            exponent *= 2.0;
+            if exponent >= 1.0 {
+                result = result * root;
+                exponent -= 1.0;
+            }
+        }
+        Self::UNKNOWN
+    }
 }
+
+/// Where a root counts as near to 1.
+const NEAR_ONE: f64 = 1.0 / 131_072.0;
 
 impl Add for Bounded {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self::rounded(self.value + o.value, self.error + o.error)
+        // Sums do not underflow: a subnormal one is exact.
+        let value = self.value + o.value;
+        Self {
+            value,
+            error: (self.error + o.error) + U * value.abs(),
+        }
     }
 }
 
@@ -51,7 +104,11 @@ impl Sub for Bounded {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self::rounded(self.value - o.value, self.error + o.error)
+        let value = self.value - o.value;
+        Self {
+            value,
+            error: (self.error + o.error) + U * value.abs(),
+        }
     }
 }
 
@@ -59,9 +116,12 @@ impl Mul for Bounded {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        let carried =
-            self.value.abs() * o.error + o.value.abs() * self.error + self.error * o.error;
-        Self::rounded(self.value * o.value, carried)
+        let value = self.value * o.value;
+        let carried = (self.value.abs() + self.error) * o.error + o.value.abs() * self.error;
+        Self {
+            value,
+            error: carried + (U * value.abs() + TINY),
+        }
     }
 }
 
@@ -70,14 +130,17 @@ impl Div for Bounded {
     #[inline(always)]
     fn div(self, o: Self) -> Self {
         let value = self.value / o.value;
-        let least = o.value.abs() - o.error;
-        if least <= 0.0 {
-            return Self {
-                value,
-                error: f64::INFINITY,
-            };
+        // This difference may be much smaller than its terms, so the bound is made as large as it may be first.
+        let least = o.value.abs() - o.error * Self::GROW;
+        let carried = (self.error + ((value.abs() + TINY) * o.error + TINY)) / least;
+        Self {
+            value,
+            error: if least > 0.0 {
+                carried + (U * value.abs() + TINY)
+            } else {
+                f64::INFINITY
+            },
         }
-        Self::rounded(value, (self.error + value.abs() * o.error) / least)
     }
 }
 
@@ -98,73 +161,76 @@ impl Real for Bounded {
         Self { value, error: 0.0 }
     }
 
-    #[inline(always)]
     fn ratio(value: &Ratio) -> Self {
-        Self::rounded(f64::ratio(value), 0.0)
+        let near = f64::ratio(value);
+        let exact = near.is_finite() && crate::prepare::exact::ratio(near) == *value;
+        Self {
+            value: near,
+            error: if exact { 0.0 } else { U * near.abs() + TINY },
+        }
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // √(a ± e) lies within e/√a of √a, and within √e where a is that small.
+        // √(a ± e) lies within e/√a of √a, and within √(2e) where a is no larger than e. A root never underflows.
         let value = self.value.max(0.0).sqrt();
         let carried = if self.value > self.error {
             self.error / value
         } else {
             (2.0 * self.error).sqrt()
         };
-        Self::rounded(value, carried)
-    }
-
-    #[inline(always)]
-    fn pow(self, exponent: f64) -> Self {
-        // d(xⁿ) = n·xⁿ⁻¹·dx; the library's own error is taken as 2⁻⁵⁰, since none is promised.
-        let value = self.value.powf(exponent);
-        let least = self.value - self.error;
-        if least <= 0.0 {
-            return Self {
-                value,
-                error: f64::INFINITY,
-            };
+        Self {
+            value,
+            error: carried + (U * value + TINY),
         }
-        let slope = exponent.abs()
-            * value
-                .max(least.powf(exponent))
-                .max((self.value + self.error).powf(exponent));
-        Self::rounded(value, slope * self.error / least + 8.0 * U * value)
     }
 
-    #[inline(always)]
-    fn cos_degrees(angle: f64) -> Self {
-        let value = f64::cos_degrees(angle);
-        let exact = [60.0, 90.0, 120.0, 180.0].contains(&angle);
-        if exact {
-            Self::exact(value)
+    fn pow(self, exponent: f64) -> Self {
+        // A root of what may be negative would be a guess.
+        if self.value - self.error * Self::GROW <= 0.0 {
+            return Self::UNKNOWN;
+        }
+        let whole = exponent.trunc();
+        let power = self.whole_power(whole);
+        if exponent == whole {
+            power
         } else {
-            Self {
-                value,
-                error: 8.0 * U,
-            }
+            power * self.part_power(exponent - whole)
+        }
+    }
+
+    fn cos_degrees(angle: f64) -> Self {
+        // By Niven's theorem no other angle in range has a rational cosine.
+        match angle {
+            0.0 | 60.0 | 90.0 | 120.0 | 180.0 => Self::exact(f64::cos_degrees(angle)),
+            _ => lazy::bounded_cosine(angle),
         }
     }
 
     #[inline(always)]
     fn sign(self) -> Result<Ordering, Undecided> {
-        if self.value.abs() > self.error * GROW || self.error == 0.0 {
-            self.value.sign()
-        } else {
-            Err(Undecided)
+        if self.value.abs() > self.error * Self::GROW {
+            return Ok(if self.value > 0.0 {
+                Ordering::Greater
+            } else {
+                Ordering::Less
+            });
         }
+        if self.value == 0.0 && self.error == 0.0 {
+            return Ok(Ordering::Equal);
+        }
+        Err(Undecided)
     }
 
     #[inline(always)]
     fn floor(self) -> Result<f64, Undecided> {
-        let low = self.value.floor();
+        let low = whole_below(self.value);
         if self.error == 0.0 {
             return Ok(low);
         }
-        // Both differences are exact, or as good as: they are at most 1, and value has the bits.
-        let margin = self.error * GROW;
-        if self.value - low > margin && low + 1.0 - self.value > margin {
+        // Both differences are exact, or rounded to no less than they are wide: they are at most 1.
+        let margin = self.error * Self::GROW;
+        if self.value - low > margin && (low + 1.0) - self.value > margin {
             Ok(low)
         } else {
             Err(Undecided)
@@ -172,8 +238,50 @@ impl Real for Bounded {
     }
 
     #[inline(always)]
+    fn abs(self) -> Result<Self, Undecided> {
+        // | |X| − |x| | ≤ |X − x|, whatever the signs are.
+        Ok(Self {
+            value: self.value.abs(),
+            error: self.error,
+        })
+    }
+
+    #[inline(always)]
     fn approx(self) -> f64 {
         self.value
+    }
+
+    #[inline(always)]
+    fn near(self) -> Self {
+        self
+    }
+
+    fn nearest_f32(self) -> Result<f32, Undecided> {
+        // Rounded outward, and to f32 monotonically.
+        let margin = self.error * Self::GROW;
+        let (low, high) = (self.value - margin, self.value + margin);
+        let exact = self.error == 0.0;
+        let low = if exact { low } else { low.next_down() } as f32;
+        let high = if exact { high } else { high.next_up() } as f32;
+        if low == high && self.value.is_finite() {
+            Ok(high)
+        } else {
+            Err(Undecided)
+        }
+    }
+
+    #[inline(always)]
+    fn byte(self) -> Result<u8, Undecided> {
+        let scaled = 255.0 * self.value;
+        // The product's rounding and those below are within 4u of it.
+        let margin = (255.0 * (Self::GROW + 1e-12)) * self.error + (4.0 * U) * scaled.abs();
+        // The conversions clamp and truncate; of a NaN they would make 0.
+        let (low, high) = ((scaled - margin) as u8, (scaled + margin) as u8);
+        if low == high && margin < 1e300 {
+            Ok(low)
+        } else {
+            Err(Undecided)
+        }
     }
 }
 

@@ -1,15 +1,17 @@
 //! The number types that the tracer runs on.
 //!
 //! `cpu` is written once, over [`Real`]. A number type says what it knows: a comparison that it cannot decide is
-//! [`Undecided`], never a guess. f64 decides always, and is wrong where its rounding crosses the border.
+//! [`Undecided`], never a guess. [`Bounded`] is f64 that knows its error, and decides nearly every pixel; [`Lazy`] decides
+//! the others, in the end exactly. Plain f64 decides always, and is wrong where its rounding crosses the border: it is
+//! for people to read, and for the GPU's tables.
 
 mod bounded;
-mod double_double;
 mod float;
+mod lazy;
 mod vec3;
 
 pub use bounded::Bounded;
-pub use double_double::DoubleDouble;
+pub use lazy::{Effort, Lazy, Mark};
 pub use vec3::V3;
 
 use std::cmp::Ordering;
@@ -56,8 +58,47 @@ pub trait Real:
     /// The largest integer that is not above the number, if it is certain.
     fn floor(self) -> Result<f64, Undecided>;
 
-    /// An f64 near the number, for people to read.
+    /// The floor of the number modulo `modulus`, from 0 up, if it is certain.
+    fn floor_mod(self, modulus: u32) -> Result<u32, Undecided> {
+        // Exact: a remainder of doubles has no rounding, and integers below 2³² can be added to one.
+        let modulus = f64::from(modulus);
+        let rest = self.floor()? % modulus;
+        Ok(if rest < 0.0 { rest + modulus } else { rest } as u32)
+    }
+
+    /// An f64 near the number: for people to read, and where any number near it will do.
     fn approx(self) -> f64;
+
+    /// An f64 near the number, and how far off it may be.
+    fn near(self) -> Bounded {
+        Bounded::exact(self.approx())
+    }
+
+    /// The f32 nearest to the number, of two the even one, if it is certain.
+    fn nearest_f32(self) -> Result<f32, Undecided>;
+
+    /// floor(min(255, max(0, 255·v))) of a number v that is not negative, if it is certain.
+    fn byte(self) -> Result<u8, Undecided> {
+        let scaled = self * Self::exact(255.0);
+        if (scaled - Self::exact(255.0)).non_negative()? {
+            return Ok(255);
+        }
+        // Below 1 the byte is 0, however near to 0 that is.
+        if (Self::exact(1.0) - scaled).positive()? {
+            return Ok(0);
+        }
+        Ok(scaled.floor()? as u8)
+    }
+
+    /// How much memory numbers take; see [`release`](Real::release).
+    fn mark() -> Mark {
+        Mark::default()
+    }
+
+    /// Gives back the memory of all numbers made since then; none of them may be used again.
+    fn release(mark: Mark) {
+        let _ = mark;
+    }
 
     /// Whether the number is > 0.
     fn positive(self) -> Result<bool, Undecided> {

@@ -215,7 +215,14 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     let gpu = open_gpu(settings, &mut report)?;
     let view = View::new(settings.screen_tolerance, settings.samples);
     let jitter = settings.sampling(width, rows.end);
-    let tracer = Tracer::new(scene, view, settings.sample_limits(), &jitter, width);
+    let tracer = Tracer::new(
+        scene,
+        view,
+        settings.sample_limits(),
+        &jitter,
+        width,
+        settings.values,
+    );
     let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build();
     let pool = settings.threads.map(threads).transpose();
     let pool = pool.map_err(|error| Error::Threads(error.to_string()))?;

@@ -384,7 +384,7 @@ struct Surfaces {
 impl Surfaces {
     fn new(scene: &Scene, prepared: &Prepared<Bounded>, tolerance: f64) -> Self {
         let groups = match &prepared.world {
-            Some(world) => world.groups.clone(),
+            Some(world) => world.groups.to_vec(),
             None => world::groups(scene),
         };
         let mut covered = HashSet::new();

@@ -1,0 +1,324 @@
+//! Deciding the sign of an expression whose f64 enclosure does not tell.
+
+use std::cmp::Ordering;
+
+use dashu_int::IBig;
+
+use super::arena::{Arena, Effort, Op};
+use super::ball::Ball;
+use super::tower::{Element, TooHard};
+use super::{Lazy, cosine};
+use crate::prepare::exact::{Ratio, ratio};
+use crate::real::{Bounded, Real, Undecided};
+
+/// The precisions, in bits, in which an expression is computed.
+const BITS: [usize; 4] = [128, 256, 512, 1024];
+/// A number that is known not to be 0 is computed on and on; this is far beyond where one of ours ends.
+const MOST_BITS: usize = 1 << 17;
+/// Roots in an exact number: at once, and where 128 bits do not decide.
+const FEW_ROOTS: usize = 2;
+const MOST_ROOTS: usize = 4;
+/// Expressions larger than this, or with more roots, are not tried exactly at once.
+const SMALL: usize = 400;
+const SMALL_ROOTS: usize = 6;
+
+/// The operands of a node, the first and the second.
+fn operands(op: &Op) -> [Option<u32>; 2] {
+    match *op {
+        Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) => [Some(a), Some(b)],
+        Op::Neg(a) | Op::Sqrt(a) => [Some(a), None],
+        Op::Number(_) | Op::Ratio(_) | Op::Cosine(_) | Op::Fault => [None, None],
+    }
+}
+
+impl Arena {
+    /// The sign of a number, proven; or presumed to be that of 0, which is noted.
+    pub(super) fn sign(&mut self, x: Lazy) -> Result<Ordering, Undecided> {
+        let node = self.node(x);
+        if let Ok(sign) = node.near.sign() {
+            return Ok(sign);
+        }
+        if matches!(node.op, Op::Fault) {
+            return Err(Undecided);
+        }
+        self.note(Effort::Precision);
+        let (nodes, roots) = self.size(x);
+        if nodes <= SMALL
+            && roots <= SMALL_ROOTS
+            && let Ok(value) = self.exact(x, FEW_ROOTS)
+        {
+            return self.settle(x, &value);
+        }
+        let mut why = None;
+        for bits in BITS {
+            if let Some(sign) = self.ball(x, bits).and_then(|ball| ball.sign()) {
+                return Ok(sign);
+            }
+            if bits == BITS[0] {
+                match self.exact(x, MOST_ROOTS) {
+                    Ok(value) => return self.settle(x, &value),
+                    Err(fault) => why = Some(fault),
+                }
+            }
+        }
+        if why == Some(TooHard::Undefined) {
+            return Err(Undecided);
+        }
+        if self.never_zero(x) {
+            let mut bits = 2 * BITS[3];
+            while bits <= MOST_BITS {
+                if let Some(sign) = self.ball(x, bits).and_then(|ball| ball.sign()) {
+                    return Ok(sign);
+                }
+                bits *= 2;
+            }
+        }
+        self.note(Effort::Presumed);
+        self.set_zero(x);
+        Ok(Ordering::Equal)
+    }
+
+    /// The sign of an exact number, which from now on is known of the node.
+    fn settle(&mut self, x: Lazy, value: &Element) -> Result<Ordering, Undecided> {
+        if value.is_zero() {
+            self.note(Effort::Proven);
+            self.set_zero(x);
+            return Ok(Ordering::Equal);
+        }
+        self.tower.begin();
+        match self.tower.sign(value) {
+            Ok(sign) => Ok(sign),
+            // It is not 0, so some precision tells its sign.
+            Err(_) => (0..)
+                .map(|i| BITS[0] << i)
+                .take_while(|&bits| bits <= MOST_BITS)
+                .find_map(|bits| self.ball(x, bits).and_then(|ball| ball.sign()))
+                .ok_or(Undecided),
+        }
+    }
+
+    fn set_zero(&mut self, x: Lazy) {
+        let node = &mut self.nodes[x.0 as usize];
+        node.op = Op::Number(0.0);
+        node.near = Bounded::exact(0.0);
+        node.known = None;
+    }
+
+    /// Whether the number is the difference of one made by square roots and a cosine that cannot be.
+    fn never_zero(&mut self, x: Lazy) -> bool {
+        let Op::Sub(a, b) = self.node(x).op else {
+            return false;
+        };
+        let opaque = |arena: &Self, i: u32| matches!(arena.nodes[i as usize].op, Op::Cosine(_));
+        let order = self.below(a, |_| false);
+        opaque(self, b) && !order.iter().any(|&i| opaque(self, i))
+    }
+
+    /// The largest integer that is not above the number.
+    pub(super) fn floor(&mut self, x: Lazy) -> Result<IBig, Undecided> {
+        if matches!(self.node(x).op, Op::Fault) {
+            return Err(Undecided);
+        }
+        let near = self.near(x);
+        let small = near.error < 0.25 && near.value.abs() < (1_u64 << 51) as f64;
+        let whole = if small {
+            Some(IBig::from(near.value.round() as i64))
+        } else {
+            BITS.into_iter()
+                .find_map(|bits| self.ball(x, bits).and_then(|ball| ball.integer()))
+        };
+        let whole = whole.ok_or(Undecided)?;
+        let border = self.ratio(&Ratio::from(whole.clone()));
+        let above = self.sub(x, border);
+        Ok(match self.sign(above)? {
+            Ordering::Less => whole - IBig::ONE,
+            _ => whole,
+        })
+    }
+
+    /// The f64 enclosure, made narrower than this share of the number if it can be.
+    pub(super) fn narrow(&mut self, x: Lazy, share: f64) -> Bounded {
+        // What is smaller than 10⁻³⁰ of the viewpoint's distance matters to nobody who asks for f64.
+        let wide = |near: Bounded| {
+            near.error > share * near.value.abs() && near.error > 1e-30 || near.error.is_nan()
+        };
+        for bits in BITS {
+            if !wide(self.near(x)) || matches!(self.node(x).op, Op::Fault) {
+                break;
+            }
+            self.ball(x, bits);
+        }
+        self.near(x)
+    }
+
+    /// The number in so many bits or more.
+    pub(super) fn ball(&mut self, x: Lazy, bits: usize) -> Option<Ball> {
+        let has = |arena: &Self, i: u32| {
+            let known = arena.nodes[i as usize].known.as_ref();
+            known
+                .and_then(|known| known.ball.as_ref())
+                .is_some_and(|&(has, _)| has >= bits)
+        };
+        for i in self.below(x.0, |node| {
+            let known = node.known.as_ref();
+            known
+                .and_then(|known| known.ball.as_ref())
+                .is_some_and(|&(has, _)| has >= bits)
+        }) {
+            if has(self, i) {
+                continue;
+            }
+            let ball = self.compute(i, bits);
+            let node = &mut self.nodes[i as usize];
+            if let Some(ball) = &ball {
+                let near = ball.bounded();
+                if near.error < node.near.error && near.value.is_finite() {
+                    node.near = near;
+                }
+            }
+            node.known.get_or_insert_default().ball = Some((bits, ball));
+        }
+        self.known_ball(x.0)
+    }
+
+    fn known_ball(&self, i: u32) -> Option<Ball> {
+        let known = self.nodes[i as usize].known.as_ref()?;
+        known.ball.as_ref()?.1.clone()
+    }
+
+    /// A node from its operands' balls.
+    fn compute(&self, i: u32, bits: usize) -> Option<Ball> {
+        let of = |i: u32| {
+            let known = self.nodes[i as usize].known.as_ref()?;
+            known.ball.as_ref()?.1.as_ref()
+        };
+        match &self.nodes[i as usize].op {
+            Op::Number(value) => Some(Ball::exact(*value)),
+            Op::Ratio(value) => Ball::ratio(value, bits),
+            Op::Add(a, b) => of(*a)?.add(of(*b)?, bits),
+            Op::Sub(a, b) => of(*a)?.add(&of(*b)?.neg(), bits),
+            Op::Mul(a, b) => of(*a)?.mul(of(*b)?, bits),
+            Op::Div(a, b) => of(*a)?.div(of(*b)?, bits),
+            Op::Neg(a) => Some(of(*a)?.neg()),
+            Op::Sqrt(a) => of(*a)?.sqrt(bits),
+            Op::Cosine(angle) => Some(cosine::cosine(*angle, bits)),
+            Op::Fault => None,
+        }
+    }
+
+    /// All nodes below `root` and itself, operands first; nodes for which `known` holds are not looked into.
+    fn below(&mut self, root: u32, known: impl Fn(&super::arena::Node) -> bool) -> Vec<u32> {
+        self.looks = self.looks.wrapping_add(1);
+        if self.looks == 0 {
+            // Once in four thousand million looks, an old mark might be taken for a new one.
+            self.nodes.iter_mut().for_each(|node| node.seen = 0);
+            self.looks = 1;
+        }
+        let looks = self.looks;
+        let mut found = Vec::new();
+        let mut waiting = vec![root];
+        while let Some(i) = waiting.pop() {
+            let node = &mut self.nodes[i as usize];
+            if node.seen == looks {
+                continue;
+            }
+            node.seen = looks;
+            found.push(i);
+            if !known(node) {
+                waiting.extend(operands(&node.op).into_iter().flatten());
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// How many nodes and how many roots there are below a node of which nothing exact is known.
+    fn size(&mut self, x: Lazy) -> (usize, usize) {
+        let tower = self.towers;
+        let known = move |node: &super::arena::Node| {
+            let known = node.known.as_ref();
+            known
+                .and_then(|known| known.exact.as_ref())
+                .is_some_and(|(of, value)| *of == tower || value.is_rational())
+        };
+        let order = self.below(x.0, known);
+        let roots = order.iter().filter(|&&i| {
+            let node = &self.nodes[i as usize];
+            matches!(node.op, Op::Sqrt(_)) && !known(node)
+        });
+        let roots = roots.count();
+        (order.len(), roots)
+    }
+
+    /// The exact number, with so many roots in the tower at most. If it takes more, and there are some that were adjoined
+    /// for other numbers, then once again without those.
+    fn exact(&mut self, x: Lazy, most: usize) -> Result<Element, TooHard> {
+        let others = self.tower.height() > 0;
+        let most_now = most.max(self.tower.height().min(MOST_ROOTS));
+        match self.try_exact(x.0, most_now) {
+            Err(TooHard::Roots) if others => {
+                self.new_tower();
+                self.try_exact(x.0, most)
+            }
+            result => result,
+        }
+    }
+
+    fn exactly(&self, i: u32) -> Option<&Element> {
+        let (tower, value) = self.nodes[i as usize].known.as_ref()?.exact.as_ref()?;
+        (*tower == self.towers || value.is_rational()).then_some(value)
+    }
+
+    fn try_exact(&mut self, root: u32, most: usize) -> Result<Element, TooHard> {
+        self.tower.begin();
+        let mut waiting = vec![root];
+        while let Some(&i) = waiting.last() {
+            if self.exactly(i).is_some() {
+                waiting.pop();
+                continue;
+            }
+            let op = &self.nodes[i as usize].op;
+            let vanishes = match op {
+                Op::Mul(a, b) => [a, b]
+                    .into_iter()
+                    .any(|&i| self.exactly(i).is_some_and(Element::is_zero)),
+                _ => false,
+            };
+            let missing = operands(op)
+                .into_iter()
+                .flatten()
+                .find(|&i| self.exactly(i).is_none());
+            let value = match missing {
+                _ if vanishes => Element::zero(),
+                Some(i) => {
+                    waiting.push(i);
+                    continue;
+                }
+                None => self.evaluate(i, most)?,
+            };
+            let known = self.nodes[i as usize].known.get_or_insert_default();
+            known.exact = Some((self.towers, value));
+            waiting.pop();
+        }
+        self.exactly(root).cloned().ok_or(TooHard::Undefined)
+    }
+
+    fn evaluate(&mut self, i: u32, most: usize) -> Result<Element, TooHard> {
+        let of = |i: u32| self.exactly(i).ok_or(TooHard::Undefined);
+        match &self.nodes[i as usize].op {
+            Op::Number(value) => Ok(Element::Rational(ratio(*value))),
+            Op::Ratio(value) => Ok(Element::Rational((**value).clone())),
+            Op::Add(a, b) => of(*a)?.add(of(*b)?),
+            Op::Sub(a, b) => of(*a)?.sub(of(*b)?),
+            Op::Mul(a, b) => self.tower.mul(of(*a)?, of(*b)?),
+            Op::Div(a, b) => self.tower.div(of(*a)?, of(*b)?),
+            Op::Neg(a) => Ok(of(*a)?.neg()),
+            Op::Sqrt(a) => {
+                let square = of(*a)?.clone();
+                self.tower.sqrt(&square, most)
+            }
+            Op::Cosine(_) => Err(TooHard::Opaque),
+            Op::Fault => Err(TooHard::Undefined),
+        }
+    }
+}

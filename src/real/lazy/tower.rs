@@ -1,0 +1,423 @@
+//! Exact numbers: rationals, and fields that grow out of them by up to four square roots.
+//!
+//! K₀ = ℚ, K₍ᵢ₊₁₎ = Kᵢ(√cᵢ) with cᵢ > 0 in Kᵢ that has no root there. An element of K₍ᵢ₊₁₎ is a + b√cᵢ with a and b in Kᵢ, in
+//! one way only; so it is 0 just if all coefficients are. That is what proves a tie.
+
+use std::cell::Cell;
+use std::cmp::Ordering;
+use std::rc::Rc;
+
+use dashu_base::{BitTest, SquareRootRem};
+use dashu_int::UBig;
+
+use crate::prepare::exact::Ratio;
+
+/// A number of the tower.
+#[derive(Debug, Clone)]
+pub(super) enum Element {
+    /// A rational number.
+    Rational(Ratio),
+    /// a + b√c, c the root adjoined as number `level` (from 1), a and b of lower levels, b not 0.
+    Root(Rc<Rooted>),
+}
+
+/// a + b√c.
+#[derive(Debug)]
+pub(super) struct Rooted {
+    level: usize,
+    a: Element,
+    b: Element,
+}
+
+/// Why there is no exact number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TooHard {
+    /// It takes more roots.
+    Roots,
+    /// Its numbers have too many digits.
+    Size,
+    /// It has a cosine in it that no roots give.
+    Opaque,
+    /// It is divided by zero somewhere, or is the root of a negative number.
+    Undefined,
+}
+
+type Exact = Result<Element, TooHard>;
+
+/// The field.
+#[derive(Debug, Default)]
+pub(super) struct Tower {
+    /// What the roots are roots of.
+    squares: Vec<Element>,
+    /// Products of words made since the last [`Tower::begin`].
+    spent: Cell<usize>,
+}
+
+/// Products of words that one number may take: some hundredths of a second.
+const MAX_WORK: usize = 1 << 24;
+
+/// Numerators and denominators beyond this are given up.
+const MAX_BITS: usize = 100_000;
+/// From here on a fraction is reduced.
+const REDUCE_BITS: usize = 384;
+
+fn held(value: Ratio) -> Exact {
+    let bits = value.numerator().bit_len() + value.denominator().bit_len();
+    if bits <= REDUCE_BITS {
+        return Ok(Element::Rational(value));
+    }
+    let value = value.canonicalize().relax();
+    if value.numerator().bit_len() + value.denominator().bit_len() > MAX_BITS {
+        return Err(TooHard::Size);
+    }
+    Ok(Element::Rational(value))
+}
+
+impl Element {
+    pub(super) fn zero() -> Self {
+        Self::Rational(Ratio::ZERO)
+    }
+
+    pub(super) fn is_zero(&self) -> bool {
+        matches!(self, Self::Rational(value) if value.is_zero())
+    }
+
+    pub(super) fn is_rational(&self) -> bool {
+        matches!(self, Self::Rational(_))
+    }
+
+    fn level(&self) -> usize {
+        match self {
+            Self::Rational(_) => 0,
+            Self::Root(r) => r.level,
+        }
+    }
+
+    /// a + b√c of this level.
+    fn of(level: usize, a: Self, b: Self) -> Self {
+        if b.is_zero() {
+            a
+        } else {
+            Self::Root(Rc::new(Rooted { level, a, b }))
+        }
+    }
+
+    /// The coefficients at this level, which is the number's own or a higher one.
+    fn split(&self, level: usize) -> (Self, Self) {
+        match self {
+            Self::Root(r) if r.level == level => (r.a.clone(), r.b.clone()),
+            _ => (self.clone(), Self::zero()),
+        }
+    }
+
+    pub(super) fn neg(&self) -> Self {
+        match self {
+            Self::Rational(value) => Self::Rational(-value.clone()),
+            Self::Root(r) => Self::of(r.level, r.a.neg(), r.b.neg()),
+        }
+    }
+
+    pub(super) fn add(&self, o: &Self) -> Exact {
+        match (self, o) {
+            (Self::Rational(x), Self::Rational(y)) => {
+                if x.is_zero() {
+                    return Ok(o.clone());
+                }
+                if y.is_zero() {
+                    return Ok(self.clone());
+                }
+                held(x + y)
+            }
+            (Self::Root(x), Self::Root(y)) if x.level == y.level => {
+                Ok(Self::of(x.level, x.a.add(&y.a)?, x.b.add(&y.b)?))
+            }
+            (Self::Root(x), _) if x.level > o.level() => {
+                Ok(Self::of(x.level, x.a.add(o)?, x.b.clone()))
+            }
+            _ => o.add(self),
+        }
+    }
+
+    pub(super) fn sub(&self, o: &Self) -> Exact {
+        self.add(&o.neg())
+    }
+}
+
+impl Tower {
+    /// Begins a number: what was spent before does not count.
+    pub(super) fn begin(&self) {
+        self.spent.set(0);
+    }
+
+    fn spend(&self, a: &Ratio, b: &Ratio) -> Result<(), TooHard> {
+        let words = |x: &Ratio| (x.numerator().bit_len() + x.denominator().bit_len()) / 64 + 1;
+        self.spent.set(self.spent.get() + words(a) * words(b));
+        if self.spent.get() > MAX_WORK {
+            return Err(TooHard::Size);
+        }
+        Ok(())
+    }
+
+    /// How many roots have been adjoined.
+    pub(super) fn height(&self) -> usize {
+        self.squares.len()
+    }
+
+    pub(super) fn mul(&self, x: &Element, y: &Element) -> Exact {
+        if x.is_zero() || y.is_zero() {
+            return Ok(Element::zero());
+        }
+        match (x, y) {
+            (Element::Rational(a), Element::Rational(b)) => {
+                self.spend(a, b)?;
+                held(a * b)
+            }
+            (Element::Root(p), Element::Root(q)) if p.level == q.level => {
+                let c = &self.squares[p.level - 1];
+                let bb = self.mul(&p.b, &q.b)?;
+                let a = self.mul(&p.a, &q.a)?.add(&self.mul(&bb, c)?)?;
+                let b = self.mul(&p.a, &q.b)?.add(&self.mul(&p.b, &q.a)?)?;
+                Ok(Element::of(p.level, a, b))
+            }
+            (Element::Root(p), _) if p.level > y.level() => {
+                Ok(Element::of(p.level, self.mul(&p.a, y)?, self.mul(&p.b, y)?))
+            }
+            _ => self.mul(y, x),
+        }
+    }
+
+    /// 1/x = (a − b√c)/(a² − b²c). The norm is not 0, as c has no root below.
+    fn inverse(&self, x: &Element) -> Exact {
+        match x {
+            Element::Rational(value) if value.is_zero() => Err(TooHard::Undefined),
+            Element::Rational(value) => held(Ratio::ONE / value),
+            Element::Root(r) => {
+                let over = self.inverse(&self.norm(r)?)?;
+                let a = self.mul(&r.a, &over)?;
+                let b = self.mul(&r.b, &over)?.neg();
+                Ok(Element::of(r.level, a, b))
+            }
+        }
+    }
+
+    /// a² − b²c.
+    fn norm(&self, r: &Rooted) -> Exact {
+        let bb = self.mul(&r.b, &r.b)?;
+        self.mul(&r.a, &r.a)?
+            .sub(&self.mul(&bb, &self.squares[r.level - 1])?)
+    }
+
+    pub(super) fn div(&self, x: &Element, y: &Element) -> Exact {
+        if let (Element::Rational(a), Element::Rational(b)) = (x, y)
+            && !b.is_zero()
+        {
+            self.spend(a, b)?;
+            return held(a / b);
+        }
+        self.mul(x, &self.inverse(y)?)
+    }
+
+    pub(super) fn sign(&self, x: &Element) -> Result<Ordering, TooHard> {
+        let r = match x {
+            Element::Rational(value) => return Ok(value.cmp(&Ratio::ZERO)),
+            Element::Root(r) => r,
+        };
+        let (a, b) = (self.sign(&r.a)?, self.sign(&r.b)?);
+        if a == Ordering::Equal || a == b {
+            return Ok(b);
+        }
+        // Of unlike signs: the larger in absolute value has its way.
+        let norm = self.sign(&self.norm(r)?)?;
+        Ok(if a == Ordering::Greater {
+            norm
+        } else {
+            norm.reverse()
+        })
+    }
+
+    /// The root that is not negative, in this field or, if that has none, in the field with it adjoined; `most` roots
+    /// in all.
+    pub(super) fn sqrt(&mut self, x: &Element, most: usize) -> Exact {
+        match self.sign(x)? {
+            Ordering::Less => return Err(TooHard::Undefined),
+            Ordering::Equal => return Ok(Element::zero()),
+            Ordering::Greater => {}
+        }
+        if let Some(root) = self.root_in(x, self.height())? {
+            return Ok(if self.sign(&root)? == Ordering::Less {
+                root.neg()
+            } else {
+                root
+            });
+        }
+        if self.height() >= most {
+            return Err(TooHard::Roots);
+        }
+        self.squares.push(x.clone());
+        Ok(Element::of(
+            self.height(),
+            Element::zero(),
+            Element::Rational(Ratio::ONE),
+        ))
+    }
+
+    /// A root of `x` in the field of the first `level` roots.
+    ///
+    /// If a + b√c = (m + l√c)², then m² + l²c = a and 2ml = b. With b = 0 one of m and l is 0: a or a/c is a square. Else
+    /// a² − b²c = (m² − l²c)² is a square n², and m² = (a ± n)/2.
+    fn root_in(&self, x: &Element, level: usize) -> Result<Option<Element>, TooHard> {
+        if let (Element::Rational(value), 0) = (x, level) {
+            return Ok(rational_root(value).map(Element::Rational));
+        }
+        let (a, b) = x.split(level);
+        let below = level - 1;
+        let c = &self.squares[below];
+        if b.is_zero() {
+            if let Some(root) = self.root_in(&a, below)? {
+                return Ok(Some(root));
+            }
+            let root = self.root_in(&self.div(&a, c)?, below)?;
+            return Ok(root.map(|l| Element::of(level, Element::zero(), l)));
+        }
+        let bb = self.mul(&b, &b)?;
+        let norm = self.mul(&a, &a)?.sub(&self.mul(&bb, c)?)?;
+        let Some(n) = self.root_in(&norm, below)? else {
+            return Ok(None);
+        };
+        let half = Element::Rational(Ratio::from_parts(1.into(), UBig::from(2_u8)));
+        for n in [n.neg(), n] {
+            let square = self.mul(&a.add(&n)?, &half)?;
+            if let Some(m) = self.root_in(&square, below)? {
+                let l = self.div(&self.mul(&b, &half)?, &m)?;
+                return Ok(Some(Element::of(level, m, l)));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The root of a rational number, if it is rational.
+fn rational_root(value: &Ratio) -> Option<Ratio> {
+    if *value < Ratio::ZERO {
+        return None;
+    }
+    let (numerator, denominator) = value.clone().canonicalize().into_parts();
+    let (_, numerator) = numerator.into_parts();
+    let root = |n: &UBig| {
+        let (root, rest) = n.sqrt_rem();
+        rest.is_zero().then_some(root)
+    };
+    Some(Ratio::from_parts(
+        root(&numerator)?.into(),
+        root(&denominator)?,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prepare::exact::ratio;
+
+    fn number(value: f64) -> Element {
+        Element::Rational(ratio(value))
+    }
+
+    fn root(tower: &mut Tower, x: &Element) -> Element {
+        tower.sqrt(x, 4).unwrap()
+    }
+
+    fn same(x: &Element, y: &Element) -> bool {
+        x.sub(y).unwrap().is_zero()
+    }
+
+    #[test]
+    fn products_of_roots_are_roots_of_products() {
+        let mut t = Tower::default();
+        let (two, three) = (root(&mut t, &number(2.0)), root(&mut t, &number(3.0)));
+        let six = root(&mut t, &number(6.0));
+        assert_eq!(t.height(), 2, "√6 is in ℚ(√2, √3)");
+        assert!(same(&t.mul(&two, &three).unwrap(), &six));
+        assert!(!same(
+            &two.add(&three).unwrap(),
+            &root(&mut t, &number(10.0))
+        ));
+        let eight = root(&mut t, &number(0.125));
+        assert!(same(&t.mul(&eight, &number(4.0)).unwrap(), &two));
+        assert_eq!(t.sqrt(&number(-1.0), 4).unwrap_err(), TooHard::Undefined);
+    }
+
+    #[test]
+    fn nested_roots_are_found_in_the_field() {
+        let mut t = Tower::default();
+        let two = root(&mut t, &number(2.0));
+        let nested = number(3.0)
+            .add(&t.mul(&number(2.0), &two).unwrap())
+            .unwrap();
+        let found = root(&mut t, &nested);
+        assert!(
+            same(&found, &two.add(&number(1.0)).unwrap()),
+            "√(3 + 2√2) = 1 + √2"
+        );
+        let three = root(&mut t, &number(3.0));
+        let six = t.mul(&two, &three).unwrap();
+        let nested = number(5.0)
+            .add(&t.mul(&number(2.0), &six).unwrap())
+            .unwrap();
+        let found = root(&mut t, &nested);
+        assert!(
+            same(&found, &two.add(&three).unwrap()),
+            "√(5 + 2√6) = √2 + √3"
+        );
+        assert_eq!(t.height(), 2);
+        // √(5 − 2√6) = √3 − √2, which is positive.
+        let nested = number(5.0)
+            .sub(&t.mul(&number(2.0), &six).unwrap())
+            .unwrap();
+        let found = root(&mut t, &nested);
+        assert!(same(&found, &three.sub(&two).unwrap()));
+        // √(1 + √2) is new.
+        root(&mut t, &number(1.0).add(&two).unwrap());
+        assert_eq!(t.height(), 3);
+    }
+
+    #[test]
+    fn the_nested_root_may_come_first() {
+        let mut t = Tower::default();
+        let six = root(&mut t, &number(6.0));
+        let nested = number(5.0)
+            .add(&t.mul(&number(2.0), &six).unwrap())
+            .unwrap();
+        let sum = root(&mut t, &nested);
+        let two = root(&mut t, &number(2.0));
+        let three = root(&mut t, &number(3.0));
+        assert_eq!(t.height(), 2);
+        assert!(same(&sum, &two.add(&three).unwrap()));
+    }
+
+    #[test]
+    fn signs_and_inverses_are_exact() {
+        let mut t = Tower::default();
+        let roots = [2.0, 3.0, 5.0, 7.0].map(|n| root(&mut t, &number(n)));
+        assert_eq!(t.sqrt(&number(11.0), 4).unwrap_err(), TooHard::Roots);
+        let sum = roots
+            .iter()
+            .try_fold(number(-8.02), |sum, root| sum.add(root))
+            .unwrap();
+        // √2 + √3 + √5 + √7 = 8.0280…
+        assert_eq!(t.sign(&sum).unwrap(), Ordering::Greater);
+        let one = t.mul(&sum, &t.inverse(&sum).unwrap()).unwrap();
+        assert!(same(&one, &number(1.0)));
+        // (√2 + √3 + √5 + √7)² is a square again.
+        let square = t.mul(&sum, &sum).unwrap();
+        assert!(same(&root(&mut t, &square), &sum));
+        assert!(!same(&square, &sum));
+        // 665857/470832 is √2 to 12 digits, from above.
+        let near = t
+            .div(&number(665_857.0), &number(470_832.0))
+            .unwrap()
+            .sub(&roots[0])
+            .unwrap();
+        assert_eq!(t.sign(&near).unwrap(), Ordering::Greater);
+        assert_eq!(t.inverse(&number(0.0)).unwrap_err(), TooHard::Undefined);
+    }
+}
