@@ -19,7 +19,7 @@ pub struct Ray<R> {
 pub fn camera_getdir<R: Real>(camera: &Camera<R>, x: f64, y: f64) -> Ray<R> {
     let axis = |i: usize, at: f64| {
         // Exact: a pixel, with the jitter's ten bits, and a whole number.
-        R::exact(at - f64::from(camera.anchor[i])) * camera.step[i] + camera.offset[i]
+        camera.step[i].times(at - f64::from(camera.anchor[i])) + camera.offset[i]
     };
     let w = V3::new(axis(0, x), axis(1, y), -camera.distance);
     Ray {
@@ -32,7 +32,7 @@ pub fn camera_getdir<R: Real>(camera: &Camera<R>, x: f64, y: f64) -> Ray<R> {
 /// The factor from a reflectivity to a pixel value: 1/t, the inverse of the distance s·|W| in world units.
 #[inline]
 pub fn inverse_distance<R: Real>(camera: &Camera<R>, ray: &Ray<R>, inverse: R) -> R {
-    inverse / ray.w2.sqrt() * R::exact(two_to(-camera.scale))
+    (inverse / ray.w2.sqrt()).times(two_to(-camera.scale))
 }
 
 /// The bytes of a pixel: floor(min(255, max(0, 255·v))).

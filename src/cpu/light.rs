@@ -56,11 +56,7 @@ pub fn light_term<R: Real>(
         return Ok(Lit::AtLight);
     }
     let distance = distance2.sqrt();
-    let d = V3::new(
-        toward.x / distance,
-        toward.y / distance,
-        toward.z / distance,
-    );
+    let d = toward * (R::exact(1.0) / distance);
     let level = scene.is_plane[point.object]
         && world.planes[world.places[point.object]]
             .level
@@ -78,7 +74,7 @@ pub fn light_term<R: Real>(
         Err(blocker) => return Ok(Lit::Shadowed(blocker)),
     };
     // c/dist, with c the cosine.
-    let falloff = across / distance2 * R::exact(two_to(-scene.camera.scale));
+    let falloff = (across / distance2).times(two_to(-scene.camera.scale));
     let diffuse = getdiff(scene, point)?.each(light.emissivity).each(filter) * falloff;
     let glint = glint(scene, light, point, normal, base, d)?;
     Ok(Lit::Lit {

@@ -12,7 +12,7 @@ use crate::real::{Real, Undecided, V3};
 pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
     if let Some(front) = &plane.front {
         let [x, y] = ray.pixel;
-        let side = front[0] * R::exact(x) + front[1] * R::exact(y) + front[2];
+        let side = front[0].times(x) + front[1].times(y) + front[2];
         if !side.non_negative()? {
             return Ok(None);
         }
@@ -42,13 +42,16 @@ pub fn plane_hits_from<R: Real>(
     highest: R,
 ) -> Result<Option<(R, V3<R>)>, Undecided> {
     let across = plane.direction.dot(dir);
-    if across.sign()? == Ordering::Equal {
+    let facing = across.sign()?;
+    if facing == Ordering::Equal {
         return Ok(None);
     }
-    let t = (plane.constant - plane.direction.dot(base)) / across;
-    if !t.positive()? {
+    let away = plane.constant - plane.direction.dot(base);
+    // t is their quotient, and > 0 where they have the same sign.
+    if away.sign()? != facing {
         return Ok(None);
     }
+    let t = away / across;
     let position = on_plane(plane, base + dir * t);
     if !(highest - position.z).non_negative()? {
         return Ok(None);

@@ -37,9 +37,8 @@ fn sphere_disc<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, al
 #[inline]
 fn sphere_offset<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Option<[R; 2]> {
     let seen = sphere.seen.as_ref()?;
-    let axis = |i: usize| {
-        R::exact(ray.pixel[i] - f64::from(seen.anchor[i])) * camera.step[i] + seen.offset[i]
-    };
+    let axis =
+        |i: usize| camera.step[i].times(ray.pixel[i] - f64::from(seen.anchor[i])) + seen.offset[i];
     Some([axis(0), axis(1)])
 }
 

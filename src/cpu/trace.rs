@@ -197,7 +197,7 @@ pub fn ray_trace<R: Real>(
             let one = R::exact(1.0);
             let first = Branch {
                 base: zero,
-                dir: V3::new(ray.w.x / length, ray.w.y / length, ray.w.z / length),
+                dir: ray.w * (one / length),
                 total: R::zero(),
                 last: None,
                 weight: V3::new(one, one, one),
@@ -244,7 +244,9 @@ impl<R: Real> Tree<'_, R> {
                 return Ok(());
             }
             let number = self.rays;
+            let mark = R::mark();
             if (ray.total - longest).positive()? {
+                R::release(mark);
                 watch.missed(number, &ray, Unmet::TooLong);
                 continue;
             }
@@ -258,7 +260,10 @@ impl<R: Real> Tree<'_, R> {
             };
             match closest_from(self.world, ray.base, ray.dir, &range)? {
                 Some(met) => self.shade(number, &ray, met.t, &met.point, watch)?,
-                None => watch.missed(number, &ray, Unmet::Nothing),
+                None => {
+                    R::release(mark);
+                    watch.missed(number, &ray, Unmet::Nothing);
+                }
             }
         }
         Ok(())
@@ -291,10 +296,13 @@ impl<R: Real> Tree<'_, R> {
         let mut color = getamb(scene, point)?;
         watch.met(number, ray, t, point, color);
         for light in 0..world.lights.len() {
+            let mark = R::mark();
             let lit = light_term(scene, world, light, point, normal, ray.base)?;
             watch.light(light, &lit);
             if let Lit::Lit { diffuse, glint, .. } = lit {
                 color = color + diffuse + glint;
+            } else {
+                R::release(mark);
             }
         }
         let total = ray.total + t;
@@ -305,8 +313,8 @@ impl<R: Real> Tree<'_, R> {
         } else {
             one
         };
-        let unit = R::exact(two_to(-scene.camera.scale));
-        let share = ray.weight.each(color) * (kept / total * unit);
+        let share = (kept / total).times(two_to(-scene.camera.scale));
+        let share = ray.weight.each(color) * share;
         watch.adds(share);
         self.color = self.color + share;
         let last = Some(world.groups[point.object]);

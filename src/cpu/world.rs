@@ -47,6 +47,10 @@ pub fn closest_from<R: Real>(
     hits_from(world, base, dir, range, &mut |met| {
         let takes = match &closest {
             None => true,
+            // Surfaces that coincide are met at the same place.
+            Some(best) if world.groups[best.point.object] == world.groups[met.point.object] => {
+                met.point.object < best.point.object
+            }
             Some(best) => {
                 let difference = best.t - met.t;
                 difference.positive()?

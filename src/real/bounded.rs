@@ -84,6 +84,15 @@ impl Bounded {
     }
 }
 
+/// What the factors' errors make of that of their product.
+#[inline(always)]
+fn carried(a: Bounded, b: Bounded) -> f64 {
+    (a.value.abs() + a.error) * b.error + b.value.abs() * a.error
+}
+
+/// A divisor whose relative error is below this is divided by as it is.
+const NEARLY: f64 = 1.0 / 1_048_576.0;
+
 /// Where a root counts as near to 1.
 const NEAR_ONE: f64 = 1.0 / 131_072.0;
 
@@ -117,10 +126,9 @@ impl Mul for Bounded {
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
         let value = self.value * o.value;
-        let carried = (self.value.abs() + self.error) * o.error + o.value.abs() * self.error;
         Self {
             value,
-            error: carried + (U * value.abs() + TINY),
+            error: carried(self, o) + (U * value.abs() + TINY),
         }
     }
 }
@@ -130,13 +138,21 @@ impl Div for Bounded {
     #[inline(always)]
     fn div(self, o: Self) -> Self {
         let value = self.value / o.value;
+        let inverse = 1.0 / o.value.abs();
+        let off = (value.abs() + TINY) * o.error + (self.error + TINY);
+        if o.error * inverse < NEARLY {
+            // 1/(|y| − ε) ≤ (1 + 2·ε/|y|)/|y|: the division need not wait for the errors.
+            return Self {
+                value,
+                error: off * (inverse * (1.0 + 3.0 * NEARLY)) + (U * value.abs() + TINY),
+            };
+        }
         // This difference may be much smaller than its terms, so the bound is made as large as it may be first.
         let least = o.value.abs() - o.error * Self::GROW;
-        let carried = (self.error + ((value.abs() + TINY) * o.error + TINY)) / least;
         Self {
             value,
             error: if least > 0.0 {
-                carried + (U * value.abs() + TINY)
+                off / least + (U * value.abs() + TINY)
             } else {
                 f64::INFINITY
             },
@@ -167,6 +183,15 @@ impl Real for Bounded {
         Self {
             value: near,
             error: if exact { 0.0 } else { U * near.abs() + TINY },
+        }
+    }
+
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        let value = self.value * factor;
+        Self {
+            value,
+            error: factor.abs() * self.error + (U * value.abs() + TINY),
         }
     }
 
@@ -275,10 +300,17 @@ impl Real for Bounded {
         let scaled = 255.0 * self.value;
         // The product's rounding and those below are within 4u of it.
         let margin = (255.0 * (Self::GROW + 1e-12)) * self.error + (4.0 * U) * scaled.abs();
-        // The conversions clamp and truncate; of a NaN they would make 0.
-        let (low, high) = ((scaled - margin) as u8, (scaled + margin) as u8);
-        if low == high && margin < 1e300 {
-            Ok(low)
+        if scaled + margin < 1.0 {
+            return Ok(0);
+        }
+        if scaled - margin >= 255.0 {
+            return Ok(255);
+        }
+        // No decision by a NaN: it is neither.
+        let whole = scaled as i32;
+        let rest = scaled - f64::from(whole);
+        if rest > margin && 1.0 - rest > margin {
+            Ok(whole as u8)
         } else {
             Err(Undecided)
         }

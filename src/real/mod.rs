@@ -43,6 +43,12 @@ pub trait Real:
     /// The number nearest to `value`, or the smallest that encloses it.
     fn ratio(value: &Ratio) -> Self;
 
+    /// The product with an f64, taken exactly.
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self * Self::exact(factor)
+    }
+
     /// The square root of a number that is not negative.
     fn sqrt(self) -> Self;
 

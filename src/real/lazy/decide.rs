@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::arena::{Arena, Effort, Op};
+use super::arena::{Arena, Effort, Node, Op};
 use super::ball::Ball;
 use super::tower::{Element, TooHard};
 use super::{Lazy, cosine};
@@ -17,7 +17,9 @@ const BITS: [usize; 4] = [128, 256, 512, 1024];
 const MOST_BITS: usize = 1 << 17;
 /// Roots in an exact number: at once, and where 128 bits do not decide.
 const FEW_ROOTS: usize = 2;
-const MOST_ROOTS: usize = 4;
+const MOST_ROOTS: usize = 6;
+/// Expressions with more nodes than this are not computed: their numbers would take some hundred megabytes.
+const LARGEST: usize = 1 << 20;
 /// Expressions larger than this, or with more roots, are not tried exactly at once.
 const SMALL: usize = 400;
 const SMALL_ROOTS: usize = 6;
@@ -29,6 +31,14 @@ fn operands(op: &Op) -> [Option<u32>; 2] {
         Op::Neg(a) | Op::Sqrt(a) => [Some(a), None],
         Op::Number(_) | Op::Ratio(_) | Op::Cosine(_) | Op::Fault => [None, None],
     }
+}
+
+/// Whether a node has been computed in so many bits or more.
+fn has(node: &Node, bits: usize) -> bool {
+    let known = node.known.as_ref();
+    known
+        .and_then(|known| known.ball.as_ref())
+        .is_some_and(|&(has, _)| has >= bits)
 }
 
 impl Arena {
@@ -43,6 +53,10 @@ impl Arena {
         }
         self.note(Effort::Precision);
         let (nodes, roots) = self.size(x);
+        if nodes > LARGEST {
+            self.note(Effort::Presumed);
+            return Err(Undecided);
+        }
         if nodes <= SMALL
             && roots <= SMALL_ROOTS
             && let Ok(value) = self.exact(x, FEW_ROOTS)
@@ -153,19 +167,12 @@ impl Arena {
 
     /// The number in so many bits or more.
     pub(super) fn ball(&mut self, x: Lazy, bits: usize) -> Option<Ball> {
-        let has = |arena: &Self, i: u32| {
-            let known = arena.nodes[i as usize].known.as_ref();
-            known
-                .and_then(|known| known.ball.as_ref())
-                .is_some_and(|&(has, _)| has >= bits)
-        };
-        for i in self.below(x.0, |node| {
-            let known = node.known.as_ref();
-            known
-                .and_then(|known| known.ball.as_ref())
-                .is_some_and(|&(has, _)| has >= bits)
-        }) {
-            if has(self, i) {
+        let order = self.below(x.0, |node| has(node, bits));
+        if order.len() > LARGEST {
+            return None;
+        }
+        for i in order {
+            if has(&self.nodes[i as usize], bits) {
                 continue;
             }
             let ball = self.compute(i, bits);
@@ -207,7 +214,7 @@ impl Arena {
     }
 
     /// All nodes below `root` and itself, operands first; nodes for which `known` holds are not looked into.
-    fn below(&mut self, root: u32, known: impl Fn(&super::arena::Node) -> bool) -> Vec<u32> {
+    fn below(&mut self, root: u32, known: impl Fn(&Node) -> bool) -> Vec<u32> {
         self.looks = self.looks.wrapping_add(1);
         if self.looks == 0 {
             // Once in four thousand million looks, an old mark might be taken for a new one.
@@ -235,7 +242,7 @@ impl Arena {
     /// How many nodes and how many roots there are below a node of which nothing exact is known.
     fn size(&mut self, x: Lazy) -> (usize, usize) {
         let tower = self.towers;
-        let known = move |node: &super::arena::Node| {
+        let known = move |node: &Node| {
             let known = node.known.as_ref();
             known
                 .and_then(|known| known.exact.as_ref())
@@ -256,7 +263,7 @@ impl Arena {
         let others = self.tower.height() > 0;
         let most_now = most.max(self.tower.height().min(MOST_ROOTS));
         match self.try_exact(x.0, most_now) {
-            Err(TooHard::Roots) if others => {
+            Err(TooHard::Roots | TooHard::Size) if others => {
                 self.new_tower();
                 self.try_exact(x.0, most)
             }

@@ -54,7 +54,7 @@ pub(super) struct Tower {
 }
 
 /// Products of words that one number may take: some hundredths of a second.
-const MAX_WORK: usize = 1 << 24;
+const MAX_WORK: usize = 1 << 21;
 
 /// Numerators and denominators beyond this are given up.
 const MAX_BITS: usize = 100_000;
