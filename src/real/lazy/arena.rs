@@ -76,7 +76,7 @@ pub(super) struct Arena {
 /// More nodes than this, 200 MB of them, are not made.
 const MAX_NODES: usize = 1 << 22;
 
-const ZERO: Lazy = Lazy(0);
+pub(super) const ZERO: Lazy = Lazy(0);
 const ONE: Lazy = Lazy(1);
 const FAULT: Lazy = Lazy(2);
 /// How many nodes always are there.

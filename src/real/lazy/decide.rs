@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::arena::{Arena, Effort, Node, Op};
+use super::arena::{Arena, Effort, Node, Op, ZERO};
 use super::ball::Ball;
 use super::tower::{Element, TooHard};
 use super::{Lazy, cosine};
@@ -46,6 +46,9 @@ impl Arena {
     pub(super) fn sign(&mut self, x: Lazy) -> Result<Ordering, Undecided> {
         let node = self.node(x);
         if let Ok(sign) = node.near.sign() {
+            if sign == Ordering::Equal && x != ZERO {
+                self.note(Effort::Proven);
+            }
             return Ok(sign);
         }
         if matches!(node.op, Op::Fault) {
@@ -126,6 +129,15 @@ impl Arena {
         let opaque = |arena: &Self, i: u32| matches!(arena.nodes[i as usize].op, Op::Cosine(_));
         let order = self.below(a, |_| false);
         opaque(self, b) && !order.iter().any(|&i| opaque(self, i))
+    }
+
+    /// The f64 enclosure of a number whose floor is asked for. That it is an integer is a tie.
+    pub(super) fn clear_of_integers(&mut self, x: Lazy) -> Option<Bounded> {
+        let near = self.near(x);
+        if near.error == 0.0 && near.value.fract() == 0.0 && x != ZERO {
+            self.note(Effort::Proven);
+        }
+        near.error.is_finite().then_some(near)
     }
 
     /// The largest integer that is not above the number.

@@ -124,7 +124,9 @@ impl Real for Lazy {
     }
 
     fn floor(self) -> Result<f64, Undecided> {
-        if let Ok(low) = with(|arena| arena.near(self)).floor() {
+        if let Some(near) = with(|arena| arena.clear_of_integers(self))
+            && let Ok(low) = near.floor()
+        {
             return Ok(low);
         }
         let whole = with(|arena| arena.floor(self))?;
@@ -137,8 +139,9 @@ impl Real for Lazy {
     }
 
     fn floor_mod(self, modulus: u32) -> Result<u32, Undecided> {
-        let near = with(|arena| arena.near(self));
-        if let Ok(rest) = near.floor_mod(modulus) {
+        if let Some(near) = with(|arena| arena.clear_of_integers(self))
+            && let Ok(rest) = near.floor_mod(modulus)
+        {
             return Ok(rest);
         }
         let whole = with(|arena| arena.floor(self))?;

@@ -53,8 +53,8 @@ pub(super) struct Tower {
     spent: Cell<usize>,
 }
 
-/// Products of words that one number may take: some hundredths of a second.
-const MAX_WORK: usize = 1 << 21;
+/// Products of words that one number may take: some hundredths of a second on the machine this was written on.
+const MAX_WORK: usize = 1 << 23;
 
 /// Numerators and denominators beyond this are given up.
 const MAX_BITS: usize = 100_000;
@@ -151,7 +151,14 @@ impl Tower {
 
     fn spend(&self, a: &Ratio, b: &Ratio) -> Result<(), TooHard> {
         let words = |x: &Ratio| (x.numerator().bit_len() + x.denominator().bit_len()) / 64 + 1;
-        self.spent.set(self.spent.get() + words(a) * words(b));
+        let (a, b) = (words(a), words(b));
+        // Reducing a fraction is what takes most.
+        let reducing = if 64 * (a + b) > REDUCE_BITS {
+            8 * (a + b) * (a + b)
+        } else {
+            0
+        };
+        self.spent.set(self.spent.get() + a * b + reducing);
         if self.spent.get() > MAX_WORK {
             return Err(TooHard::Size);
         }
