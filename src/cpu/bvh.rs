@@ -41,7 +41,9 @@ pub fn bvh_hits<R: Real>(
     for (slack, (base, dir)) in slack.iter_mut().zip(base.iter().zip(&dir)) {
         // A component that is replaced below is off by twice as much as its replacement.
         *slack = 1.01 * (base.error + farthest / longest * (dir.error + 2e-30));
-        if !(*slack < 1e-3 * farthest) {
+        // A NaN is no less than anything.
+        let narrow = *slack < 1e-3 * farthest;
+        if !narrow {
             return Err(Undecided);
         }
     }

@@ -139,9 +139,9 @@ impl Low {
 /// any word below is not 0. None for 0.
 pub(super) fn top(n: &IBig) -> Option<(u64, i64, bool)> {
     let (_, words) = n.as_sign_words();
-    let last = *words.last()? as u64;
+    let last = *words.last()?;
     let lead = last.leading_zeros();
-    let below = words.len().checked_sub(2).map_or(0, |i| words[i] as u64);
+    let below = words.len().checked_sub(2).map_or(0, |i| words[i]);
     let top = if lead == 0 {
         last
     } else {

@@ -27,9 +27,13 @@ fn random() -> impl FnMut() -> f64 {
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
         let bits = state >> 11;
-        let bits = if state % 3 == 0 { bits >> 45 } else { bits };
+        let bits = if state.is_multiple_of(3) {
+            bits >> 45
+        } else {
+            bits
+        };
         let value = (bits as f64 - 100.0) * ((state >> 3) as f64 % 60.0 - 30.0).exp2();
-        if state % 17 == 0 { 0.0 } else { value }
+        if state.is_multiple_of(17) { 0.0 } else { value }
     }
 }
 
