@@ -105,7 +105,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     );
     results[at + 9u] = vec4u(
         u32(abs(x) > LITERAL_3),
-        0u,
+        bitcast<u32>(dot(vec3f(x, LITERAL_0, y), vec3f(y, LITERAL_1, x))),
         0u,
         0u,
     );

@@ -207,7 +207,7 @@ changes no byte, only memory and time; a band has fewer rows where so many would
         long_help = "\
 The notes' listing of pixels, to stderr after the picture is done, bottom row first: any of pix, hit, drgb, irgb, \
 offset, separated by commas. It is computed on the CPU, whatever rendered the picture. Lines are begun by pix. A pixel \
-without a hit lists pix only. drgb is the colour (1 is full brightness), irgb the bytes as the CPU has them (a picture from the GPU differs by one here and there), \
+without a hit lists pix only. drgb is the colour (1 is full brightness), irgb the bytes, \
 offset the pixel's number, from the top left of the whole picture."
     )]
     pub(crate) debug: Vec<DebugName>,

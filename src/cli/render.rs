@@ -322,6 +322,9 @@ impl<'a> Job<'a> {
             render::Error::TooManyRays(PixelFault { x, y, .. }) => {
                 anyhow!("{error}; `plumb probe SCENE {x} {y}` shows what they do")
             }
+            render::Error::Revoked(_) => {
+                anyhow!("{error}, and cannot be taken back: write to a file, or with --backend cpu")
+            }
             error => anyhow::Error::new(error),
         }
     }

@@ -11,6 +11,10 @@ use crate::scene::load_from;
 const WIDTH: u32 = 64;
 const HEIGHT: u32 = 48;
 
+/// Verdicts that come with a pixel.
+const SURE: u8 = 0;
+const DOUBTFUL: u8 = 1;
+
 /// A wall whose bytes are far from any border but where it changes.
 fn scene() -> Scene {
     let text = "camera c { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 }
@@ -61,9 +65,9 @@ fn nothing_is_wrong_by_itself() {
 #[test]
 fn a_wrong_byte_in_the_first_band_makes_the_cpu_render() {
     let right = rgb(&rendered(&settings(Backend::Cpu)).1);
-    tamper_with(&[checked(40..48)]);
+    tamper_with(&[checked(40..48)], SURE);
     let (report, bands) = rendered(&settings(Backend::Gpu));
-    tamper_with(&[]);
+    tamper_with(&[], SURE);
     let report = report.unwrap();
     assert_eq!(report.backend, Backend::Cpu);
     let revoked = report.revoked.unwrap();
@@ -77,9 +81,9 @@ fn a_wrong_byte_in_the_first_band_makes_the_cpu_render() {
 #[test]
 fn a_wrong_byte_later_makes_the_cpu_go_on() {
     let right = rgb(&rendered(&settings(Backend::Cpu)).1);
-    tamper_with(&[checked(16..24)]);
+    tamper_with(&[checked(16..24)], SURE);
     let (report, bands) = rendered(&settings(Backend::Gpu));
-    tamper_with(&[]);
+    tamper_with(&[], SURE);
     assert!(report.unwrap().revoked.is_some());
     assert!(rgb(&bands) == right);
     let mut top = HEIGHT;
@@ -94,23 +98,56 @@ fn a_wrong_byte_later_makes_the_cpu_go_on() {
 #[test]
 fn wrong_bytes_that_were_handed_on_are_found() {
     let [x, y] = checked(40..48);
-    tamper_with(&[[(x + 1) % WIDTH, y], checked(16..24)]);
+    tamper_with(&[[(x + 1) % WIDTH, y], checked(16..24)], SURE);
     let (report, bands) = rendered(&settings(Backend::Gpu));
-    tamper_with(&[]);
+    tamper_with(&[], SURE);
     assert!(matches!(report, Err(Error::Revoked(_))), "{report:?}");
     assert_eq!(bands.len(), 3);
+}
+
+/// Doubtful pixels are decided on the CPU, few and many, with one sample and with several; and a single one that is not
+/// is seen in the picture.
+#[test]
+fn doubtful_pixels_are_decided_and_none_is_dropped() {
+    let all: Vec<[u32; 2]> = (0..WIDTH * HEIGHT)
+        .map(|n| [n % WIDTH, n / WIDTH])
+        .collect();
+    for (samples, jitter) in [(1, Spread::Hash), (3, Spread::Hash), (3, Spread::Course)] {
+        for few in [all.as_slice(), &all[70..75], &all[1000..1200]] {
+            let on = |backend| Settings {
+                samples,
+                jitter,
+                ..settings(backend)
+            };
+            let right = rgb(&rendered(&on(Backend::Cpu)).1);
+            tamper_with(few, DOUBTFUL);
+            let (report, bands) = rendered(&on(Backend::Gpu));
+            // The last one comes as if it were sure.
+            tamper_with(&few[few.len() - 1..], SURE);
+            let (_, dropped) = rendered(&Settings {
+                precision: Precision::Fast,
+                ..on(Backend::Gpu)
+            });
+            tamper_with(&[], SURE);
+            let report = report.unwrap();
+            assert_eq!(report.revoked, None);
+            assert_eq!(report.refined, few.len() as u64);
+            assert!(rgb(&bands) == right, "{samples} samples, {jitter:?}");
+            assert!(rgb(&dropped) != right);
+        }
+    }
 }
 
 /// Without certificates nothing is checked.
 #[test]
 fn fast_takes_the_bytes_as_they_come() {
-    tamper_with(&[checked(40..48)]);
+    tamper_with(&[checked(40..48)], SURE);
     let fast = Settings {
         precision: Precision::Fast,
         ..settings(Backend::Gpu)
     };
     let report = rendered(&fast).0.unwrap();
-    tamper_with(&[]);
+    tamper_with(&[], SURE);
     assert_eq!((report.revoked, report.spot_checks), (None, 0));
 }
 

@@ -99,25 +99,27 @@ pub(crate) mod tests {
     use super::*;
 
     thread_local! {
-        /// Pixels (column, row from the bottom) that the GPU gets wrong, of what is rendered on this thread next.
-        static TAMPERED: RefCell<Vec<[u32; 2]>> = const { RefCell::new(Vec::new()) };
+        /// Pixels (column, row from the bottom) that the GPU gets wrong, of what is rendered on this thread next, and
+        /// the verdict that comes with them.
+        static TAMPERED: RefCell<(Vec<[u32; 2]>, u8)> = const { RefCell::new((Vec::new(), 0)) };
     }
 
-    /// Makes the GPU get the red of these pixels wrong by one, and be sure of it, in what this thread renders next.
-    pub(crate) fn tamper_with(pixels: &[[u32; 2]]) {
-        TAMPERED.set(pixels.to_vec());
+    /// Makes the GPU get the red of these pixels wrong by one, in what this thread renders next, with a verdict.
+    pub(crate) fn tamper_with(pixels: &[[u32; 2]], verdict: u8) {
+        TAMPERED.set((pixels.to_vec(), verdict));
     }
 
     /// What [`Assembly::take`] gets under test.
     pub(super) fn tampered(rectangle: &Rectangle, bytes: &[u8], values: bool) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         let columns = rectangle.columns.end - rectangle.columns.start;
-        for [x, y] in TAMPERED.with_borrow(Vec::clone) {
+        let (pixels, verdict) = TAMPERED.with_borrow(Clone::clone);
+        for [x, y] in pixels {
             if !values && rectangle.band.contains(&y) && rectangle.columns.contains(&x) {
                 let row = rectangle.band.end - 1 - y;
                 let at = 4 * (row * columns + x - rectangle.columns.start) as usize;
                 bytes[at] ^= 1;
-                bytes[at + 3] = 0;
+                bytes[at + 3] = verdict;
             }
         }
         bytes

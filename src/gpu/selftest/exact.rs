@@ -90,6 +90,22 @@ pub(super) fn whole(x: f32, function: fn(f32) -> f32, result: f32) -> Option<boo
     (!x.is_subnormal() && x.abs() < TWO_31).then(|| result == function(x))
 }
 
+/// A dot product: each product and each of the two sums rounded, in any order, where none of them is subnormal.
+pub(super) fn dot(a: [f32; 3], b: [f32; 3], result: f32) -> Option<bool> {
+    let terms: Vec<f64> = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| f64::from(*a) * f64::from(b))
+        .collect();
+    let sizes: f64 = terms.iter().map(|term| term.abs()).sum();
+    let small = |term: &f64| *term != 0.0 && term.abs() < f64::from(f32::MIN_POSITIVE);
+    if sizes > HUGE || terms.iter().any(small) {
+        return None;
+    }
+    let u = f64::from(f32::EPSILON);
+    Some((f64::from(result) - terms.iter().sum::<f64>()).abs() <= 3.0 * u * (1.0 + u) * sizes)
+}
+
 /// x + y = sum + tail, where no part of them is subnormal or overflows.
 pub(super) fn two_sum(x: f32, y: f32, sum: f32, tail: f32) -> Option<bool> {
     let domain = -60f64..=100.0;

@@ -27,7 +27,7 @@ const LITERALS: [f32; 4] = [
     f32::from_bits(0x0080_0001),
 ];
 
-/// Words that the shader writes for each pair of operands, in fours; the last three are nothing.
+/// Words that the shader writes for each pair of operands, in fours; the last two are nothing.
 const RESULTS: usize = 40;
 
 /// Invocations of a workgroup, as the shader has it; the number of pairs is a multiple.
@@ -283,6 +283,10 @@ const CHECKS: &[Check] = &[
     Check { name: "abs(x) > literal", asked: "exact", words: 36..37, judge: |p, w| {
         let [x, _] = p.ordinary()?;
         Some(w[0] == u32::from(x.abs() > LITERALS[3]))
+    } },
+    Check { name: "dot", asked: "3 u of the sum of the terms' sizes, u = 2^-23", words: 37..38, judge: |p, w| {
+        let [x, y] = p.ordinary()?;
+        exact::dot([x, LITERALS[0], y], [y, LITERALS[1], x], f32::from_bits(w[0]))
     } },
 ];
 
