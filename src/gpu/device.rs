@@ -20,6 +20,8 @@ pub struct Gpu {
     pub name: String,
     /// All that tells it from other adapters and other drivers: name, driver, driver's version, interface, numbers.
     pub identity: String,
+    /// Whether the driver tells its version, so that another version has another identity.
+    pub tells_version: bool,
     /// Whether kernels can be timed on the device.
     pub timestamps: bool,
     /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
@@ -131,6 +133,7 @@ fn open_adapter(adapter: &wgpu::Adapter) -> Result<Gpu, GpuError> {
         queue,
         name,
         identity: identity(&info),
+        tells_version: !info.driver_info.is_empty(),
         timestamps,
         lanes,
         seconds: [0.0, device_seconds],
