@@ -2,7 +2,7 @@
 //! results against exact answers.
 //!
 //! Beside the flow: `render` asks before it trusts an adapter with certified pixels, `plumb doctor` prints the answer. The
-//! results are judged as plain data ([`judge`]), so that a test can hand in wrong ones.
+//! results are judged as plain data (`judge`), so that a test can hand in wrong ones.
 
 use std::ops::Range;
 
