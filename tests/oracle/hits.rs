@@ -1,0 +1,191 @@
+//! Where a line meets the objects (SEMANTICS 3), each at most once, nearest first: all that closest hits, shadows and rays
+//! straight through ask for.
+//!
+//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface. Parameters,
+//! not distances: the direction has any length.
+
+use std::cmp::Ordering;
+
+use plumb::scene::Shape;
+
+use super::Fault;
+use super::real::{Real, Unresolved};
+use super::vector::Vector;
+use super::world::{Body, Form, World};
+
+/// Where a line meets an object.
+#[derive(Debug)]
+pub(crate) struct Hit {
+    /// base + along · direction is the point.
+    pub(crate) along: Real,
+    /// Index of the object.
+    pub(crate) object: usize,
+    pub(crate) point: Vector,
+}
+
+impl World<'_> {
+    /// The hits of a line that left from the object `last`; of several at one point the first in the file. With `end`, which
+    /// is base + direction, only those before it.
+    pub(crate) fn hits(
+        &self,
+        base: &Vector,
+        direction: &Vector,
+        last: Option<usize>,
+        end: Option<&Vector>,
+    ) -> Result<Vec<Hit>, Unresolved> {
+        let mut hits: Vec<Hit> = Vec::new();
+        let mut crossings: Vec<Option<Option<(Real, Vector)>>> = vec![None; self.carriers];
+        if let Some(last) = last {
+            // Whatever lies on the plane or sphere that the line leaves from is met at its base, where t = 0: a miss.
+            crossings[self.bodies[last].carrier] = Some(None);
+        }
+        for (object, body) in self.bodies.iter().enumerate() {
+            let crossing = &mut crossings[body.carrier];
+            if crossing.is_none() {
+                *crossing = Some(self.crossing(body, base, direction, end)?);
+            }
+            let Some(Some((along, point))) = crossing else {
+                continue;
+            };
+            if !self.within(body, point)? {
+                continue;
+            }
+            // Objects come in file order, so a new one goes after its equals: it is left out.
+            let (mut low, mut high) = (0, hits.len());
+            let mut equal = None;
+            while low < high {
+                let middle = (low + high) / 2;
+                match along.compare(&hits[middle].along)? {
+                    Ordering::Less => high = middle,
+                    Ordering::Greater => low = middle + 1,
+                    Ordering::Equal => {
+                        equal = Some(middle);
+                        break;
+                    }
+                }
+            }
+            let hit = Hit {
+                along: along.clone(),
+                object,
+                point: point.clone(),
+            };
+            match equal {
+                None => hits.insert(low, hit),
+                Some(at) if self.rules.fault == Some(Fault::LaterOfEquals) => hits[at] = hit,
+                Some(_) => {}
+            }
+        }
+        Ok(hits)
+    }
+
+    /// Where a line meets the plane or sphere that an object lies on, as parameter and point.
+    fn crossing(
+        &self,
+        body: &Body<'_>,
+        base: &Vector,
+        direction: &Vector,
+        end: Option<&Vector>,
+    ) -> Result<Option<(Real, Vector)>, Unresolved> {
+        match &body.form {
+            Form::Plane {
+                normal,
+                point,
+                axis,
+                ..
+            } => {
+                // t = over/under > 0 just if both have the same sign.
+                let under = normal.dot(direction);
+                let side = under.sign()?;
+                if side == Ordering::Equal {
+                    return Ok(None);
+                }
+                let over = normal.dot(&(point - base));
+                if over.sign()? != side {
+                    return Ok(None);
+                }
+                // 1 − over/under = N·(end − Q)/under.
+                if let Some(end) = end
+                    && normal.dot(&(end - point)).sign()? != side
+                {
+                    return Ok(None);
+                }
+                let along = &over / &under;
+                let mut hit = base + &direction.scale(&along);
+                if let Some(axis) = *axis {
+                    hit.0[axis] = point.0[axis].clone();
+                }
+                if hit.0[2].compare(&self.tolerance)? == Ordering::Greater {
+                    return Ok(None);
+                }
+                Ok(Some((along, hit)))
+            }
+            Form::Sphere { center, square } => {
+                // f(t) = a t² − 2b t + c = 0 has two roots, the nearer one > 0, just if b, c and b² − ac are.
+                let to_center = center - base;
+                let b = direction.dot(&to_center);
+                if !b.is_positive()? {
+                    return Ok(None);
+                }
+                let c = &to_center.dot(&to_center) - square;
+                if !c.is_positive()? {
+                    return Ok(None);
+                }
+                let a = direction.dot(direction);
+                let mut sure = false;
+                if let Some(end) = end {
+                    // From f(0) = c > 0 to f(1), which needs no base.
+                    let from_center = end - center;
+                    let last = (&from_center.dot(&from_center) - square).sign()?;
+                    // Below 0 there is one root between. At 0, 1 is a root, and the nearer one just if the middle of both, b/a,
+                    // is not below 1; then the ray ends where it meets the sphere. Above 0 both are on one side of 1.
+                    let both = || from_center.dot(direction).is_positive();
+                    let blocks_at_lamp =
+                        last == Ordering::Equal && self.rules.fault == Some(Fault::BlocksAtLamp);
+                    if last != Ordering::Less && !blocks_at_lamp && !both()? {
+                        return Ok(None);
+                    }
+                    sure = last != Ordering::Greater;
+                }
+                let discriminant = &b.square() - &(&a * &c);
+                if !sure {
+                    let tangent_hits = self.rules.fault == Some(Fault::TangentHits);
+                    match discriminant.sign()? {
+                        Ordering::Greater => {}
+                        Ordering::Equal if tangent_hits => {}
+                        _ => return Ok(None),
+                    }
+                }
+                // (b − √(b² − ac))/a, without the difference.
+                let along = &c / &(&b + &discriminant.sqrt());
+                let hit = base + &direction.scale(&along);
+                Ok(Some((along, hit)))
+            }
+        }
+    }
+
+    /// Whether a point of the plane that an object lies on is the object's: a rectangle ends.
+    fn within(&self, body: &Body<'_>, hit: &Vector) -> Result<bool, Unresolved> {
+        let (
+            Shape::Plane {
+                extent: Some(_), ..
+            },
+            Form::Plane { point: corner, .. },
+            Some(sides),
+        ) = (&body.object.shape, &body.form, &body.sides)
+        else {
+            return Ok(true);
+        };
+        let from_corner = hit - corner;
+        for i in [0, 1] {
+            let place = sides.directions[i].dot(&from_corner);
+            let end = &sides.dimensions[i] * &sides.lengths[i];
+            let (low, high) = (place.sign()?, place.compare(&end)?);
+            let edge = low == Ordering::Equal || high == Ordering::Equal;
+            let open = self.rules.fault == Some(Fault::OpenRectangle);
+            if low == Ordering::Less || high == Ordering::Greater || edge && open {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
