@@ -7,6 +7,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod motifs;
 #[path = "../oracle/mod.rs"]
 mod oracle;
 mod strategy;
@@ -22,7 +23,7 @@ use oracle::{Answer, Failure, Rules};
 use strategy::{Plan, plan};
 
 /// Scenes tried without being asked for more.
-const SCENES: u64 = 400;
+const SCENES: u64 = 600;
 
 /// A pixel that takes more rays, or more mirrors one after another, is not compared: it would take the oracle minutes.
 const MOST_RAYS: u32 = 1_000;
@@ -154,6 +155,7 @@ fn random_scenes_are_certified() {
     let start = Instant::now();
     let mut all = Tried::default();
     let mut failed = Vec::new();
+    let mut tied = 0;
     let all_shown = std::env::var_os("PLUMB_RANDOM_SHOW").is_some();
     for n in first..first + count {
         if all_shown {
@@ -163,6 +165,7 @@ fn random_scenes_are_certified() {
         all.pixels += tried.pixels;
         all.skipped += tried.skipped;
         all.effort += tried.effort;
+        tied += u64::from(tried.effort.ties > 0);
         if !tried.differing.is_empty() || tried.unresolved > 0 {
             println!("PLUMB_RANDOM_FIRST={n} PLUMB_RANDOM_SCENES=1 fails:");
             println!("{}", shown(&tree(n).current(), &tried));
@@ -175,7 +178,7 @@ fn random_scenes_are_certified() {
         }
     }
     println!(
-        "scenes {first}..{}: {} pixels, {} skipped, {:.1} s; {:?}",
+        "scenes {first}..{}: {tied} with ties, {} pixels, {} skipped, {:.1} s; {:?}",
         first + count,
         all.pixels,
         all.skipped,
@@ -185,9 +188,8 @@ fn random_scenes_are_certified() {
     assert!(failed.is_empty(), "scenes {failed:?}");
     // Scenes that never tie would test little.
     assert!(
-        count < 100 || all.effort.ties > count,
-        "only {} ties",
-        all.effort.ties
+        count < 100 || tied * 5 > count,
+        "only {tied} scenes of {count} with ties"
     );
     // Nor would pixels that are all skipped.
     assert!(all.skipped * 20 < all.pixels, "{} skipped", all.skipped);
