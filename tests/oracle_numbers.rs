@@ -118,6 +118,29 @@ proptest! {
 }
 
 #[test]
+fn nothing_is_known_of_a_quotient_by_what_may_be_zero() {
+    let bits = 60;
+    let ball = |n: i64, error: i64| Ball::around(IBig::from(n), &IBig::from(error), 0, bits);
+    let one = ball(1, 0);
+    // Up to zero, and beyond it.
+    for divisor in [
+        ball(1 << 40, 1 << 40),
+        ball(-3, 3),
+        ball(1, 5),
+        ball(0, 1),
+        ball(0, 0),
+    ] {
+        assert_eq!(one.div(&divisor, bits).sign(), None);
+    }
+    assert_eq!(one.div(&ball(-4, 1), bits).sign(), Some(Ordering::Less));
+    // The root of what may be zero is not negative, and no more is known.
+    let root = ball(3, 3).sqrt(bits);
+    assert_eq!(root.sign(), None);
+    assert!(holds(&root, &RBig::ZERO) && holds(&root, &RBig::from(2)));
+    assert_eq!(root.sub(&ball(3, 0), bits).sign(), Some(Ordering::Less));
+}
+
+#[test]
 fn a_root_of_zero_divides_nothing() {
     let zero = &(&number(2).sqrt() * &number(3).sqrt()) - &number(6).sqrt();
     assert_eq!(tower::sign(&zero.sqrt(), 4), Some(Ordering::Equal));

@@ -5,7 +5,7 @@
 
 use std::cmp::Ordering;
 
-use dashu_base::{Abs, BitTest, Signed, SquareRoot};
+use dashu_base::{Abs, BitTest, SquareRoot};
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 
@@ -304,7 +304,7 @@ impl Ball {
         }
         // The divisor least in magnitude, in units of 2^other.exponent.
         let least = other.middle.clone().abs() - IBig::from(other.radius);
-        if !least.is_positive() {
+        if least <= IBig::ZERO {
             return Self::whole();
         }
         let more =
