@@ -5,8 +5,9 @@ mod common;
 
 use std::path::Path;
 
-use plumb::cpu::pixel::{Stage, Stages};
+use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Limits, Unwatched, ray_trace};
+use plumb::frame::Stage;
 use plumb::jitter::Sampling;
 use plumb::prepare::later::Laters;
 use plumb::prepare::{Prepared, View};
