@@ -14,7 +14,7 @@ use dashu_ratio::RBig;
 
 use super::angle;
 use super::ball::Ball;
-use super::tower;
+use super::tower::{self, Limits};
 
 /// Bits of the evaluation that every expression gets at once; products of two such numbers fit in 128 bits.
 pub(crate) const FIRST: usize = 60;
@@ -22,8 +22,21 @@ pub(crate) const FIRST: usize = 60;
 /// Bits of the evaluations that follow where a question is open, the exact tests of [`tower`] between them.
 const NEXT: [usize; 3] = [192, 1024, 4096];
 
-/// Most square roots in a tower, tried after each of [`NEXT`].
-const ROOTS: [usize; 3] = [2, 5, 7];
+/// How far the exact test goes after each of [`NEXT`]: nearly all ties take one or two roots and no time.
+const EXACT: [Limits; 3] = [
+    Limits {
+        roots: 2,
+        work: 30_000_000,
+    },
+    Limits {
+        roots: 5,
+        work: 300_000_000,
+    },
+    Limits {
+        roots: 7,
+        work: 20_000_000_000,
+    },
+];
 
 /// A question that neither 4,096 bits nor towers of roots decide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -186,14 +199,14 @@ impl Real {
 
     fn hard_sign(&self) -> Result<Ordering, Unresolved> {
         count(|effort| effort.open += 1);
-        for (step, (bits, roots)) in NEXT.into_iter().zip(ROOTS).enumerate() {
+        for (step, (bits, limits)) in NEXT.into_iter().zip(EXACT).enumerate() {
             if step > 0 {
                 count(|effort| effort.deep += u64::from(step == 1));
             }
             if let Some(sign) = self.ball(bits).sign() {
                 return Ok(sign);
             }
-            if let Some(sign) = tower::sign(self, roots) {
+            if let Some(sign) = tower::sign(self, limits) {
                 count(|effort| {
                     effort.exact += 1;
                     effort.ties += u64::from(sign == Ordering::Equal);

@@ -14,8 +14,14 @@ use dashu_ratio::RBig;
 
 use super::real::{Operation, Real};
 
-/// The most work before the tower gives up, in what are about nanoseconds.
-const MOST_WORK: u64 = 300_000_000;
+/// How much may go into an exact test before it gives up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Most roots adjoined.
+    pub(crate) roots: usize,
+    /// Most work, in what are about nanoseconds.
+    pub(crate) work: u64,
+}
 
 /// A number of the tower.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,31 +72,35 @@ impl Number {
 #[derive(Debug)]
 struct Tower {
     radicands: Vec<Number>,
-    most_roots: usize,
+    limits: Limits,
     work: u64,
     known: HashMap<usize, Number>,
 }
 
-/// The sign of an expression, unless it takes more than `most_roots` roots, is too long or holds what no tower does.
-pub(crate) fn sign(real: &Real, most_roots: usize) -> Option<Ordering> {
-    let mut tower = Tower::new(most_roots);
+/// The sign of an expression, unless it goes beyond the limits or holds what no tower does.
+pub(crate) fn sign(real: &Real, limits: Limits) -> Option<Ordering> {
+    let mut tower = Tower::new(limits);
     let number = tower.number(real)?;
     tower.sign(&number)
 }
 
 /// The value of an expression without roots but rational ones.
 pub(crate) fn rational(real: &Real) -> Option<RBig> {
-    match Tower::new(0).number(real)? {
+    let limits = Limits {
+        roots: 0,
+        work: 300_000_000,
+    };
+    match Tower::new(limits).number(real)? {
         Ratio(ratio) => Some(ratio),
         Storey(..) => None,
     }
 }
 
 impl Tower {
-    fn new(most_roots: usize) -> Self {
+    fn new(limits: Limits) -> Self {
         Self {
             radicands: Vec::new(),
-            most_roots,
+            limits,
             work: 0,
             known: HashMap::new(),
         }
@@ -136,7 +146,7 @@ impl Tower {
         let words = bits as u64 / 64;
         // The fraction is reduced by a gcd, which takes time with the square of the length.
         self.work += 200 + 3 * words * words;
-        (self.work <= MOST_WORK).then_some(Ratio(ratio))
+        (self.work <= self.limits.work).then_some(Ratio(ratio))
     }
 
     fn add(&mut self, x: &Number, y: &Number) -> Option<Number> {
@@ -223,7 +233,7 @@ impl Tower {
         let storey = match self.radicands.iter().position(|radicand| *radicand == x) {
             Some(storey) => storey,
             None if self.sign(&x)? == Ordering::Equal => return Some(Number::ZERO),
-            None if self.radicands.len() == self.most_roots => return None,
+            None if self.radicands.len() == self.limits.roots => return None,
             None => {
                 self.radicands.push(x);
                 self.radicands.len() - 1
