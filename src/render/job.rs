@@ -46,6 +46,13 @@ impl Job<'_> {
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
         }
+        let certified = self.settings.precision == Precision::Certified;
+        if let (true, Some(reason)) = (certified, packed.unprovable) {
+            report.fallback = Some(format!(
+                "{reason} for f32 with error bounds, so the CPU renders"
+            ));
+            return self.on_cpu(emit, report);
+        }
         let features = FeatureSet::new(&packed, self.settings, gpu.lanes);
         let wgsl = compose::compose(&packed, &features);
         let packing = start.elapsed().as_secs_f64();
@@ -60,7 +67,6 @@ impl Job<'_> {
             jitter: self.jitter,
             band_rows: self.settings.band_rows,
         };
-        let certified = self.settings.precision == Precision::Certified;
         let mut finish = Finish::new(self.tracer, emit, certified, self.settings.verdicts);
         let ended = self.in_step(gpu, &pipeline, &frame, &mut finish, report);
         report.backend = Backend::Gpu;

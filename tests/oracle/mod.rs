@@ -28,7 +28,7 @@ mod world;
 
 use std::ops::AddAssign;
 
-use plumb::render::{Backend, Settings, Spread};
+use plumb::render::{Backend, Report, Settings, Spread};
 use plumb::scene::Scene;
 use rayon::prelude::*;
 
@@ -39,7 +39,17 @@ use real::{Effort, take_effort};
 use world::World;
 
 /// The backends that are held to every byte, with the settings they have by default.
-pub(crate) const CERTIFIED: &[Backend] = &[Backend::Cpu];
+pub(crate) const CERTIFIED: &[Backend] = &[Backend::Cpu, Backend::Gpu];
+
+/// The certificate held to the end, and the backend is the one asked for unless the scene's numbers are beyond f32.
+pub(crate) fn rendered_as_asked(report: &Report, backend: Backend) {
+    assert_eq!(report.revoked, None, "the GPU was sure and wrong");
+    let beyond = report
+        .fallback
+        .as_deref()
+        .is_some_and(|why| why.contains("for f32 with error bounds"));
+    assert!(report.backend == backend || beyond, "{:?}", report.fallback);
+}
 
 /// What SEMANTICS leaves to settings.
 #[derive(Debug, Clone, PartialEq)]
