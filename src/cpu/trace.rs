@@ -9,7 +9,7 @@ use super::surface::{Point, getamb};
 use super::world::{Range, closest_from};
 use crate::prepare::exact::two_to;
 use crate::prepare::{Prepared, Surface, World};
-use crate::real::{Real, Undecided, V3};
+use crate::real::{Bounded, Real, Undecided, V3};
 
 pub use super::watch::{Branch, RayKind, Unmet, Unwatched, Watch};
 pub use crate::settings::Limits;
@@ -272,14 +272,11 @@ impl<R: Real> Tree<'_, R> {
     /// Whether the colour is certainly at least `enough` in all channels, so that the other rays cannot change the bytes.
     fn saturated(&self, enough: f64) -> bool {
         let color = self.color;
-        // Three comparisons a ray would cost; what is certain is asked only where it looks so.
-        if !(color.approx().min_element() >= enough && enough.is_finite()) {
-            return false;
-        }
-        let enough = R::exact(enough);
-        [color.x, color.y, color.z]
-            .into_iter()
-            .all(|c| (c - enough).non_negative() == Ok(true))
+        enough.is_finite()
+            && [color.x, color.y, color.z].into_iter().all(|c| {
+                let Bounded { value, error } = c.rough();
+                value - error * Bounded::GROW >= enough * (1.0 + f64::EPSILON)
+            })
     }
 
     /// Adds what a ray that met `point` at distance `t` brings, and leaves the rays that go on from there.

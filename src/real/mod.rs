@@ -80,6 +80,11 @@ pub trait Real:
         Bounded::exact(self.approx())
     }
 
+    /// The same, as it is known without any work.
+    fn rough(self) -> Bounded {
+        self.near()
+    }
+
     /// The f32 nearest to the number, of two the even one, if it is certain.
     fn nearest_f32(self) -> Result<f32, Undecided>;
 

@@ -55,11 +55,11 @@ impl Arena {
             return Err(Undecided);
         }
         self.note(Effort::Precision);
-        let (nodes, roots) = self.size(x);
-        if nodes > LARGEST {
+        if self.nodes.len() > LARGEST && self.below(x.0, |_| false).len() > LARGEST {
             self.note(Effort::Presumed);
             return Err(Undecided);
         }
+        let (nodes, roots) = self.size(x);
         if nodes <= SMALL
             && roots <= SMALL_ROOTS
             && let Ok(value) = self.exact(x, FEW_ROOTS)
@@ -168,6 +168,9 @@ impl Arena {
         let wide = |near: Bounded| {
             near.error > share * near.value.abs() && near.error > 1e-30 || near.error.is_nan()
         };
+        if self.nodes.len() > LARGEST {
+            return self.near(x);
+        }
         for bits in BITS {
             if !wide(self.near(x)) || matches!(self.node(x).op, Op::Fault) {
                 break;
@@ -227,6 +230,11 @@ impl Arena {
 
     /// All nodes below `root` and itself, operands first; nodes for which `known` holds are not looked into.
     fn below(&mut self, root: u32, known: impl Fn(&Node) -> bool) -> Vec<u32> {
+        self.below_to(root, usize::MAX, known)
+    }
+
+    /// The same, given up soon after so many.
+    fn below_to(&mut self, root: u32, most: usize, known: impl Fn(&Node) -> bool) -> Vec<u32> {
         self.looks = self.looks.wrapping_add(1);
         if self.looks == 0 {
             // Once in four thousand million looks, an old mark might be taken for a new one.
@@ -243,6 +251,9 @@ impl Arena {
             }
             node.seen = looks;
             found.push(i);
+            if found.len() > most {
+                break;
+            }
             if !known(node) {
                 waiting.extend(operands(&node.op).into_iter().flatten());
             }
@@ -260,7 +271,7 @@ impl Arena {
                 .and_then(|known| known.exact.as_ref())
                 .is_some_and(|(of, value)| *of == tower || value.is_rational())
         };
-        let order = self.below(x.0, known);
+        let order = self.below_to(x.0, SMALL, known);
         let roots = order.iter().filter(|&&i| {
             let node = &self.nodes[i as usize];
             matches!(node.op, Op::Sqrt(_)) && !known(node)

@@ -151,7 +151,11 @@ impl Real for Lazy {
     }
 
     fn approx(self) -> f64 {
-        self.near().value
+        self.rough().value
+    }
+
+    fn rough(self) -> Bounded {
+        with(|arena| arena.near(self))
     }
 
     fn near(self) -> Bounded {
