@@ -338,7 +338,8 @@ impl<R: Real> Tree<'_, R> {
             let mirrored = if scene.is_plane[point.object] {
                 // With the normal as it is given there is no root in the direction.
                 let plane = &world.planes[world.places[point.object]];
-                ray.dir - plane.twice * plane.direction.dot(ray.dir)
+                let [x, y, z] = plane.mirror;
+                V3::new(x.dot(ray.dir), y.dot(ray.dir), z.dot(ray.dir))
             } else {
                 let along = normal.dot(-ray.dir);
                 normal * (along + along) + ray.dir

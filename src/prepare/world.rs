@@ -51,8 +51,9 @@ pub struct WorldPlane<R> {
     pub direction: V3<R>,
     /// direction · P for the points P of the plane.
     pub constant: R,
-    /// 2·direction/(direction · direction): what a mirror image needs.
-    pub twice: V3<R>,
+    /// What turns a direction into its mirror image, by rows: I − 2·N·Nᵀ/(N·N), which is rational. Taken as a whole it
+    /// does not let errors grow, as D − 2(D·N)N would: three times at each mirror.
+    pub mirror: [V3<R>; 3],
     /// If the plane is perpendicular to an axis: which, and the coordinate that all its points share.
     pub own: Option<(usize, R)>,
     /// Its rectangle, if it has one.
@@ -215,11 +216,23 @@ fn plane<R: Real>(
         offset: offset / length,
         direction,
         constant: offset,
-        twice: direction * (R::exact(2.0) / direction.dot(direction)),
+        mirror: mirror(&n),
         own: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
         extent,
         level: level.collect(),
     }
+}
+
+/// The rows of I − 2·N·Nᵀ/(N·N).
+fn mirror<R: Real>(n: &[super::exact::Ratio; 3]) -> [V3<R>; 3] {
+    let nn = dot(n, n);
+    [0, 1, 2].map(|i| {
+        let [x, y, z] = [0, 1, 2].map(|j| {
+            let own = ratio(if i == j { 1.0 } else { 0.0 });
+            R::ratio(&(own - ratio(2.0) * &n[i] * &n[j] / &nn))
+        });
+        V3::new(x, y, z)
+    })
 }
 
 /// A normal divided by its largest component, in absolute value.

@@ -131,7 +131,8 @@ fn doubtful_pixels_are_decided_and_none_is_dropped() {
             tamper_with(&[], SURE);
             let report = report.unwrap();
             assert_eq!(report.revoked, None);
-            assert_eq!(report.refined, few.len() as u64);
+            // And those that the shader itself is not sure of.
+            assert!(report.refined >= few.len() as u64);
             assert!(rgb(&bands) == right, "{samples} samples, {jitter:?}");
             assert!(rgb(&dropped) != right);
         }

@@ -179,7 +179,7 @@ plane ceiling { material mirror normal 0 -1 0 point 0 7 0 }
     let hall = [walls, &light(0, "4 3 -1", 3.0)].concat();
     let options = ["--size", "8x6", "--max-path"];
     renders(&hall, &[&options[..], &["1000"]].concat());
-    let many = ["1e6", "--max-rays", "1000000"];
+    let many = ["1e5", "--max-rays", "1000000"];
     renders(&hall, &[&options[..], &many[..]].concat());
     let desk = Desk::new();
     desk.write("scene.txt", &[CAMERA, MATERIALS, &hall].concat());
