@@ -16,6 +16,8 @@ struct Light {
 // The share of a light that reaches the point.
 struct Shadow {
     share: vec3f,
+    // Whether nothing that is opaque stands between; of what panes let through nothing need be left.
+    open: bool,
     sure: bool, //~
 }
 
@@ -31,23 +33,23 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
         let left = range.limit - met.t;
         let left_error = met.error + range.limit_error;
         if (met.rival - range.limit > range.limit_error) & ((met.object == NOTHING) | (left < -left_error)) {
-            return Shadow(share, true);
+            return Shadow(share, true, true);
         }
         if (met.object == NOTHING) | !met_sure(met) | !(left > left_error) | (steps > STEPS_LIMIT) {
-            return Shadow(vec3f(1.0), false);
+            return Shadow(vec3f(1.0), true, false);
         }
 //#else
         if (met.object == NOTHING) | (steps > STEPS_LIMIT) {
-            return Shadow(share);
+            return Shadow(share, true);
         }
 //#end
         let blocker = locate_met(beam, met);
         let material = materials[objects[met.object].material];
         if material.transparency == 0.0 {
 //#if certified
-            return Shadow(vec3f(0.0), true);
+            return Shadow(vec3f(0.0), false, true);
 //#else
-            return Shadow(vec3f(0.0));
+            return Shadow(vec3f(0.0), false);
 //#end
         }
         share *= materials[tile_material(blocker)].tint * material.transparency;
@@ -56,16 +58,16 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
         range.beyond_error = met.error; //~
     }
 //#if certified
-    return Shadow(share, false);
+    return Shadow(share, true, false);
 //#else
-    return Shadow(share);
+    return Shadow(share, true);
 //#end
 //#else
     let found = anything_from(beam, range_);
 //#if certified
-    return Shadow(vec3f(select(1.0, 0.0, found == 2u)), found != 1u);
+    return Shadow(vec3f(1.0), found != 2u, found != 1u);
 //#else
-    return Shadow(vec3f(select(1.0, 0.0, found == 2u)));
+    return Shadow(vec3f(1.0), found != 2u);
 //#end
 //#end
 }
@@ -152,7 +154,7 @@ fn light_term(number: u32, point: Point, seen: Beam, diffuse: vec3f) -> Shade {
 //#else
     let blocked = shadow(Beam(point.position, d), Range(point.group, bit, 0.0, distance));
 //#end
-    if !any(blocked.share > vec3f(0.0)) {
+    if !blocked.open {
         return shade;
     }
     let full = diffuse * light.emissivity * blocked.share * (inverse * UNIT);

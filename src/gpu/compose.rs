@@ -36,7 +36,11 @@ const WORLD: &str = include_str!("../../shaders/world.wgsl");
 
 /// Writes the shader for a packed scene.
 pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
-    let procedural = procedural(features);
+    let procedural = if features.any_object() {
+        procedural(features)
+    } else {
+        String::new()
+    };
     let mut names = features.names();
     // A helper comes in where a chosen shader names it, or another helper does.
     let used = |name: &str| procedural.contains(name);

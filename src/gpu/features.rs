@@ -149,11 +149,12 @@ impl FeatureSet {
 
     /// The names that hold, for `//#if`.
     pub fn names(&self) -> BTreeSet<&'static str> {
-        let tiled = self.kinds.contains(&Kind::Tiled);
-        let textured = self.kinds.contains(&Kind::Textured);
-        let pplane = !self.pplanes().is_empty();
-        let psphere = !self.pspheres().is_empty();
+        // Without anything to hit no surface is looked at.
         let any = self.any_object();
+        let tiled = any && self.kinds.contains(&Kind::Tiled);
+        let textured = any && self.kinds.contains(&Kind::Textured);
+        let pplane = any && !self.pplanes().is_empty();
+        let psphere = any && !self.pspheres().is_empty();
         // Without anything to hit there is nothing to light.
         let is_lit = any && self.lit.is_some();
         let lit = self.lit.filter(|_| any).unwrap_or_default();

@@ -86,7 +86,14 @@ fn try_scene(plan: &Plan, gpu_too: bool) -> Tried {
             Ok(())
         });
         match rendered {
-            Ok(report) => oracle::rendered_as_asked(&report, backend),
+            Ok(report) => {
+                // The picture is right then, and yet it must not have come to that.
+                if let Some(revoked) = &report.revoked {
+                    tried.differing.push(revoked.clone());
+                    continue;
+                }
+                oracle::rendered_as_asked(&report, backend);
+            }
             Err(Error::TooManyRays(_)) if tried.skipped > 0 => continue,
             Err(error) => {
                 tried.differing.push(format!("{backend:?}: {error}"));
