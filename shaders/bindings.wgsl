@@ -28,11 +28,11 @@ struct Job {
 @group(0) @binding(4) var<storage, read> rectangles: array<Rectangle>;
 //#end
 //#if sphere_buffer
+//#if sphere_point
+@group(0) @binding(5) var<storage, read> spheres: array<SphereAndHit>;
+//#else
 @group(0) @binding(5) var<storage, read> spheres: array<Sphere>;
 //#end
-//#if sphere_point
-// One for each of `spheres`.
-@group(0) @binding(6) var<storage, read> sphere_points: array<SphereHit>;
 //#end
 //#if bvh
 @group(0) @binding(7) var<storage, read> bvh: array<BvhNode>;

@@ -46,6 +46,16 @@ fn sphere_hits(sphere: Sphere, ray: Ray) -> Candidate {
     return candidate;
 }
 //#end
+//#if sphere_buffer
+
+fn sphere_at(index: u32) -> Sphere {
+//#if sphere_point
+    return spheres[index].sphere;
+//#else
+    return spheres[index];
+//#end
+}
+//#end
 //#if sphere_point
 
 // Where a sphere that a primary ray met is met: (H − C)/(r·s) = forms·(X, Y, 1) − center·√disc.
@@ -63,10 +73,16 @@ struct SphereHit {
     unused: u32,
 }
 
+// What `spheres` holds where hits are looked at: in one buffer, as some drivers allow only ten.
+struct SphereAndHit {
+    sphere: Sphere,
+    hit: SphereHit,
+}
+
 // The unit normal at the hit, outward; in its fourth component the bound of its error.
 fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
-    let sphere = spheres[index];
-    let point = sphere_points[index];
+    let sphere = spheres[index].sphere;
+    let point = spheres[index].hit;
     let at = vec3f(from_pixel(ray, sphere.anchor), 1.0);
     let disc = (sphere.square.x * at.x + sphere.square.y * at.y + sphere.affine.x) * at.x
         + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;

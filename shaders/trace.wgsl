@@ -96,7 +96,8 @@ fn find_closest_object(ray: Ray) -> Hit {
 //#end
 //#if sphere_loop
     for (var i = SPHERE_TREE; i < SPHERES; i += 1u) {
-        nearer(&closest, sphere_hits(spheres[i], ray), spheres[i].object, i, 0u);
+        let sphere = sphere_at(i);
+        nearer(&closest, sphere_hits(sphere, ray), sphere.object, i, 0u);
     }
 //#end
 //#if sphere_tree
@@ -108,7 +109,8 @@ fn find_closest_object(ray: Ray) -> Hit {
             break;
         }
         for (var i = node.first; i < node.first + node.count; i += 1u) {
-            nearer(&closest, sphere_hits(spheres[i], ray), spheres[i].object, i, 0u);
+            let sphere = sphere_at(i);
+        nearer(&closest, sphere_hits(sphere, ray), sphere.object, i, 0u);
         }
         // What is truly nearer than the closest is entered before it.
 //#if certified

@@ -9,11 +9,11 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Folders all of whose scenes without lights are compared.
-const FOLDERS: [&str; 3] = ["notes", "gallery", "known"];
+/// Size of the pictures: the second driver is not the quickest.
+const SIZE: &str = "96x72";
 
-/// Lit scenes that are compared, of those that the second driver compiles in a moment; more belong here.
-const LIT: [&str; 1] = ["lit/shadows_balls.txt"];
+/// Scenes that are left out: one is an error, and the others keep a driver that is a single CPU busy for long.
+const LEFT_OUT: [&str; 2] = ["lit_half_mirrors_three", "lit_thousand_panes"];
 
 fn second_driver() -> PathBuf {
     let Some(named) = std::env::var_os("PLUMB_SECOND_DRIVER") else {
@@ -56,6 +56,8 @@ fn picture(scene: &Path, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) 
         "--json",
         "--precision",
         "certified",
+        "--size",
+        SIZE,
     ];
     let output = plumb(&args, driver);
     (
@@ -67,28 +69,22 @@ fn picture(scene: &Path, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) 
 #[test]
 fn two_drivers_make_the_same_pictures() {
     let second = second_driver();
-    let in_folders = |path: &PathBuf| {
-        FOLDERS
-            .iter()
-            .any(|folder| path.starts_with(common::scenes().join(folder)))
-            && common::read(path).lights.is_empty()
-    };
-    let mut scenes: Vec<PathBuf> = common::good_scenes()
+    let name = |path: &PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
+    let scenes: Vec<PathBuf> = common::good_scenes()
         .into_iter()
-        .filter(in_folders)
+        .filter(|path| !LEFT_OUT.contains(&name(path).as_str()))
         .collect();
-    assert!(scenes.len() > 20, "only {} scenes", scenes.len());
-    scenes.extend(LIT.map(|name| common::scenes().join(name)));
+    assert!(scenes.len() > 200, "only {} scenes", scenes.len());
     let mut differ = Vec::new();
     for scene in &scenes {
         let (one, first) = picture(scene, None);
         let (other, report) = picture(scene, Some(&second));
-        assert_ne!(
-            first["adapter"], report["adapter"],
-            "both are the same driver"
-        );
+        // Scenes whose numbers are beyond f32 are rendered on the CPU.
+        let on_cpu = first["fallback"].is_string() && report["fallback"].is_string();
+        let same = first["adapter"] == report["adapter"];
+        assert!(on_cpu || !same, "both are the same driver");
         for report in [first, report] {
-            if report["backend"] != "gpu" {
+            if report["revoked"].is_string() || (!on_cpu && report["backend"] != "gpu") {
                 differ.push(format!("{}: {}", scene.display(), report["revoked"]));
             }
         }

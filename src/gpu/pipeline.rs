@@ -121,13 +121,15 @@ fn upload(
         "finite planes",
         bytes(&packed.rectangles),
     )?;
-    add("sphere_buffer", 5, "spheres", bytes(&packed.spheres))?;
-    add(
-        "sphere_point",
-        6,
-        "points of spheres",
-        bytes(&packed.sphere_points),
-    )?;
+    if names.contains("sphere_point") {
+        let pairs = packed.spheres.iter().zip(&packed.sphere_points);
+        let records: Vec<u8> = pairs
+            .flat_map(|(sphere, hit)| [bytes(&[*sphere]), bytes(&[*hit])].concat())
+            .collect();
+        add("sphere_point", 5, "spheres", &records)?;
+    } else {
+        add("sphere_buffer", 5, "spheres", bytes(&packed.spheres))?;
+    }
     add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
     add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
     add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;
