@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""What certifying costs, scene by scene: python3 scripts/certificate.py [--size WxH] [SCENE...]
+
+For each scene (all in scenes/ without any named): how many pixels the GPU left doubtful, exact ties apart; what decided
+them; whether the picture is the one of --backend cpu; kernel and whole frame over those of --precision fast, the best of
+three each. A Markdown table on stdout. Needs target/release/plumb.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PLUMB = ROOT / "target" / "release" / "plumb"
+
+
+def render(scene, size, *options):
+    """The report of one rendering, or None where plumb says no."""
+    command = [PLUMB, "render", scene, "-o", "/dev/null", "--json", *options]
+    if size:
+        command += ["--size", size]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return json.loads(done.stdout) if done.returncode == 0 else None
+
+
+def best(scene, size, precision):
+    """The report with the shortest kernel, and the shortest frame, of three runs."""
+    runs = [render(scene, size, "--backend", "gpu", "--precision", precision) for _ in range(3)]
+    if None in runs:
+        return None
+    frame = lambda run: run["seconds"]["total"] - run["seconds"]["instance"] - run["seconds"]["device"] - run["seconds"]["selftest"]
+    return min(runs, key=lambda run: run["seconds"]["kernel"]), min(map(frame, runs))
+
+
+def main():
+    arguments = sys.argv[1:]
+    size = None
+    if arguments[:1] == ["--size"]:
+        size, arguments = arguments[1], arguments[2:]
+    scenes = [pathlib.Path(a) for a in arguments]
+    if not scenes:
+        scenes = sorted(p for p in ROOT.glob("scenes/**/*.txt") if p.parent.name not in ("errors",))
+    print("| scene | doubtful % | of these ties % | f64 | many bits | tie | presumed | as on the CPU | kernel × | frame × |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    total = {"pixels": 0, "doubtful": 0, "tie": 0, "presumed": 0, "scenes": 0, "differ": 0}
+    for scene in scenes:
+        certified, fast = best(scene, size, "certified"), best(scene, size, "fast")
+        cpu = render(scene, size, "--backend", "cpu")
+        if None in (certified, fast, cpu):
+            continue
+        (report, frame), (raw, raw_frame) = certified, fast
+        decided, pixels = report["decided"], report["pixels"]
+        same = report["sha256"] == cpu["sha256"] and report["revoked"] is None
+        doubtful = pixels - decided["gpu"]
+        total["scenes"] += 1
+        total["pixels"] += pixels
+        total["doubtful"] += doubtful
+        total["tie"] += decided["tie"]
+        total["presumed"] += decided["presumed"]
+        total["differ"] += not same
+        kernel = report["seconds"]["kernel"] / max(raw["seconds"]["kernel"], 1e-9)
+        print(
+            f"| {scene.stem} | {100 * (doubtful - decided['tie']) / pixels:.3f} | {100 * decided['tie'] / pixels:.3f} "
+            f"| {decided['f64']} | {decided['multiprecision']} | {decided['tie']} | {decided['presumed']} "
+            f"| {'yes' if same else 'NO'} | {kernel:.2f} | {frame / raw_frame:.2f} |",
+            flush=True,
+        )
+    print(total, file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()
