@@ -52,7 +52,8 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
             return Shadow(vec3f(0.0), false);
 //#end
         }
-        share *= materials[tile_material(blocker)].tint * material.transparency;
+        // Never flushed to nothing: the glint shines through however little else does.
+        share = max(share * (materials[tile_material(blocker)].tint * material.transparency), vec3f(0x1p-120f));
         range.skip = blocker.group;
         range.beyond = met.t;
         range.beyond_error = met.error; //~

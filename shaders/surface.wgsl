@@ -23,7 +23,8 @@ struct Material {
     power: u32,
     // What tints light that goes through.
     tint: vec3f,
-    unused: u32,
+    // 1 − transparency.
+    kept: f32,
 }
 //#else
 struct Object {

@@ -328,6 +328,11 @@ fn ray_trace(ray: Ray) -> Traced {
     let sure = hit.inverse - hit.rival > hit.error;
     if dark | !sure {
         traced.verdict = select(UNDECIDED, 0u, dark);
+//#if samples
+        // Other samples may be brighter: it brings something from 0 to 0.9.
+        traced.color = vec3f(0.45);
+        traced.error = vec3f(0.46);
+//#end
         return traced;
     }
 //#else
@@ -367,7 +372,7 @@ fn ray_trace(ray: Ray) -> Traced {
         let total_error = branch.total_error + t_error + U * total; //~
         let material = materials[objects[point.object].material];
         let lit = shade(point, branch.beam);
-        let share = branch.weight * ((1.0 - material.transparency) / total * CAMERA_GAIN);
+        let share = branch.weight * (material.kept / total * CAMERA_GAIN);
         traced.color += share * lit.color;
 //#if certified
         traced.error += share * (lit.error * (1.0 + branch.weight_error) + lit.color * (branch.weight_error + 1.01 * total_error / total + 12.0 * U))

@@ -119,13 +119,22 @@ impl Lit {
     }
 }
 
+/// In f32; a number that is not 0 stays so.
+fn positive(value: f64) -> f32 {
+    if value > 0.0 {
+        (value as f32).max(f32::MIN_POSITIVE)
+    } else {
+        0.0
+    }
+}
+
 fn material(material: &prepare::Material<Bounded>) -> Material {
     Material {
         ambient: f32x3(material.ambient),
-        transparency: material.transparency.value as f32,
+        transparency: positive(material.transparency.value),
         diffuse: f32x3(material.diffuse),
         shininess: if material.mirror {
-            material.shininess as f32
+            positive(material.shininess)
         } else {
             0.0
         },
@@ -139,7 +148,7 @@ fn material(material: &prepare::Material<Bounded>) -> Material {
             0
         },
         tint: f32x3(material.tint),
-        unused: 0,
+        kept: (Bounded::exact(1.0) - material.transparency).value as f32,
     }
 }
 

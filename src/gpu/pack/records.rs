@@ -263,8 +263,8 @@ pub struct Material {
     pub power: u32,
     /// What tints light that goes through.
     pub tint: [f32; 3],
-    /// Nothing.
-    pub unused: u32,
+    /// 1 − transparency.
+    pub kept: f32,
 }
 
 /// `Light` in `shaders/light.wgsl`.
