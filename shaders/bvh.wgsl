@@ -50,11 +50,11 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
     var walk: Walk;
     walk.base = base;
     // A zero component becomes tiny: the ray stays in its slab or out of it.
-    walk.inverse = 1.0 / select(dir, vec3f(1e-30), abs(dir) < vec3f(1e-30));
+    walk.inverse = 1.0 / select(dir, vec3f(1e-20), abs(dir) < vec3f(1e-20));
     return walk;
 }
 
-//#if widened
+//#if world_widened
 
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, beam: Beam) {

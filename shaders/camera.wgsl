@@ -70,8 +70,14 @@ fn camera_setpix(color: vec3f) -> u32 {
 fn barrier(v: vec3f) -> vec3f {
     return bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(job.zero));
 }
+fn barrier1(v: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(v) ^ job.zero);
+}
 //#else
 fn barrier(v: vec3f) -> vec3f {
+    return v;
+}
+fn barrier1(v: f32) -> f32 {
     return v;
 }
 //#end

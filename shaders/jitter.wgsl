@@ -7,5 +7,5 @@ fn jitter_hash(pixel: vec2i, number: u32) -> vec2f {
     v ^= v >> vec3u(16u);
     v.x += v.y * v.z;
     v.y += v.z * v.x;
-    return vec2f(v.xy >> vec2u(22u)) / 1024.0 - 0.5;
+    return vec2f(v.xy >> vec2u(22u)) * 0x1p-10f - 0.5;
 }

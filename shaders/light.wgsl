@@ -18,7 +18,11 @@ struct Shadow {
     share: vec3f,
     // Whether nothing that is opaque stands between; of what panes let through nothing need be left.
     open: bool,
-    sure: bool, //~
+//#if certified
+    sure: bool,
+    // Roundings of the share.
+    roundings: f32,
+//#end
 }
 
 // The share of light number `number` that reaches the point; `range` ends at the light.
@@ -26,6 +30,7 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
 //#if clear
     var range = range_;
     var share = vec3f(1.0);
+    var roundings = 0.0; //~
     loop {
         let met = closest_from(beam, range, LANES);
         steps += 2u * LANES;
@@ -33,10 +38,10 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
         let left = range.limit - met.t;
         let left_error = met.error + range.limit_error;
         if (met.rival - range.limit > range.limit_error) & ((met.object == NOTHING) | (left < -left_error)) {
-            return Shadow(share, true, true);
+            return Shadow(share, true, true, roundings);
         }
         if (met.object == NOTHING) | !met_sure(met) | !(left > left_error) | (steps > STEPS_LIMIT) {
-            return Shadow(vec3f(1.0), true, false);
+            return Shadow(vec3f(1.0), true, false, 0.0);
         }
 //#else
         if (met.object == NOTHING) | (steps > STEPS_LIMIT) {
@@ -47,26 +52,27 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
         let material = materials[objects[met.object].material];
         if material.transparency == 0.0 {
 //#if certified
-            return Shadow(vec3f(0.0), false, true);
+            return Shadow(vec3f(0.0), false, true, 0.0);
 //#else
             return Shadow(vec3f(0.0), false);
 //#end
         }
         // Never flushed to nothing: the glint shines through however little else does.
         share = max(share * (materials[tile_material(blocker)].tint * material.transparency), vec3f(0x1p-120f));
+        roundings += 4.0; //~
         range.skip = blocker.group;
         range.beyond = met.t;
         range.beyond_error = met.error; //~
     }
 //#if certified
-    return Shadow(share, true, false);
+    return Shadow(share, true, false, 0.0);
 //#else
     return Shadow(share, true);
 //#end
 //#else
     let found = anything_from(beam, range_);
 //#if certified
-    return Shadow(vec3f(1.0), found != 2u, found != 1u);
+    return Shadow(vec3f(1.0), found != 2u, found != 1u, 0.0);
 //#else
     return Shadow(vec3f(1.0), found != 2u);
 //#end
@@ -160,7 +166,7 @@ fn light_term(number: u32, point: Point, seen: Beam, diffuse: vec3f) -> Shade {
     }
     let full = diffuse * light.emissivity * blocked.share * (inverse * UNIT);
     shade.color = full * max(c, 0.0);
-    shade.error = full * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + 24.0 * U)); //~
+    shade.error = full * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
 //#if glint
     let material = materials[objects[point.object].material];
     if material.shininess > 0.0 {

@@ -35,7 +35,7 @@ fn sphere_hits(sphere: Sphere, ray: Ray) -> Candidate {
 //#if certified
     candidate.hit = (disc > sphere.disc_error) & (along > sphere.along_error);
     candidate.possible = (disc > -sphere.disc_error) & (along > -sphere.along_error);
-    let least = max(disc, sphere.disc_error);
+    let least = barrier1(max(disc, sphere.disc_error));
     let inverse_root = inverseSqrt(least);
     candidate.inverse = sphere.gain * (along + least * inverse_root);
     candidate.error = sphere.gain * (sphere.along_error + root_error(least, sphere.disc_error, inverse_root)) + ROOT_ROUNDINGS * U * abs(candidate.inverse);
@@ -88,7 +88,7 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
         + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;
     let s = 1.0 / hit.inverse;
 //#if certified
-    let least = max(disc, sphere.disc_error);
+    let least = barrier1(max(disc, sphere.disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
     let normal = barrier((vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s);
@@ -151,7 +151,7 @@ fn sphere_hits_from(sphere: WorldSphere, beam: Beam, range: Range) -> Meeting {
     let disc = sphere.radius * sphere.radius - passage.apart;
 //#if certified
     let disc_error = passage.off * (2.01 * sphere.radius + passage.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
-    let least = max(disc, disc_error);
+    let least = barrier1(max(disc, disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
     let t = passage.along - root;
@@ -186,7 +186,7 @@ fn sphere_hits_from(sphere: WorldSphere, beam: Beam, range: Range) -> Meeting {
 // H − C over the radius, where a ray from anywhere meets the sphere; in the fourth component the bound of its error.
 fn sphere_met(sphere: WorldSphere, beam: Beam) -> vec4f {
     let passage = sphere_passage(sphere.center, sphere.radius, sphere.size, beam);
-    let disc = max(sphere.radius * sphere.radius - passage.apart, TINY_SQUARE);
+    let disc = barrier1(max(sphere.radius * sphere.radius - passage.apart, TINY_SQUARE));
     let inverse_root = inverseSqrt(disc);
     let root = disc * inverse_root;
     let normal = barrier((passage.perpendicular + root * beam.dir) * -sphere.inverse_radius);

@@ -220,7 +220,7 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
     // An edge may be overshot.
     let place = vec2u(clamp(p, vec2f(0.0), size - 1.0));
     let packed = texels[plane.first + place.y * plane.size.x + place.x];
-    return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) / 256.0;
+    return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) * 0x1p-8f;
 }
 //#end
 //#if psphere
@@ -237,8 +237,11 @@ struct SpherePoint {
 
 // (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)), θ the angle of (x, y) from +x; θ = 0 at the origin. No acos and
 // no cos: cos 2θ = (x² − y²)/(x² + y²), sin 2θ = 2xy/(x² + y²). Both components may be off by `error`.
-fn color_wheel(x: f32, y: f32, error: f32) -> Shade {
+fn color_wheel(x_: f32, y_: f32, error: f32) -> Shade {
     var shade: Shade;
+    let v = barrier(vec3f(x_, y_, 0.0));
+    let x = v.x;
+    let y = v.y;
     let square = x * x + y * y;
 //#if certified
     if !(square > 1024.0 * error * error + TINY_SQUARE) {

@@ -102,6 +102,7 @@ fn find_closest_object(ray: Ray) -> Hit {
 //#end
 //#if sphere_tree
     var walk = bvh_begin(vec3f(0.0), ray.w);
+    walk.pad = 2.0 * W_ERROR * BVH_SIZE; //~
     loop {
         let node = bvh[walk.index];
         steps += LANES * (2u + node.count);
@@ -325,19 +326,23 @@ fn ray_trace(ray: Ray) -> Traced {
 //#if ambient_only
     // So far away that the byte is 0, whatever is hit.
     let dark = max(hit.inverse + hit.error, hit.rival) * ray.inverse_length < DARK;
-    let sure = hit.inverse - hit.rival > hit.error;
+    var sure = hit.inverse - hit.rival > hit.error;
+//#if first_order
+    sure &= hit.inverse > 128.0 * hit.error;
+//#end
     if dark | !sure {
         traced.verdict = select(UNDECIDED, 0u, dark);
 //#if samples
-        // Other samples may be brighter: it brings something from 0 to 0.9.
-        traced.color = vec3f(0.45);
-        traced.error = vec3f(0.46);
+        // Other samples may be brighter: it brings something from 0 to as much as it may be.
+        let most = max(hit.inverse + hit.error, hit.rival) * ray.inverse_length * BRIGHT;
+        traced.color = vec3f(0.5 * most);
+        traced.error = vec3f(0.51 * most);
 //#end
         return traced;
     }
 //#else
     let nothing = (hit.inverse + hit.error <= 0.0) & (hit.rival <= 0.0);
-    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse > LEAST_INVERSE);
+    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse > LEAST_INVERSE) & (hit.inverse > 128.0 * hit.error);
     if nothing | !sure {
         traced.verdict = select(UNDECIDED, 0u, nothing);
         return traced;
@@ -461,7 +466,7 @@ fn ray_trace(ray: Ray) -> Traced {
             steps += 2u * LANES;
 //#if certified
             met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), LANES);
-            doubt |= !met_sure(met);
+            doubt |= !met_sure(met) | (branch.beam.dir_error > DIR_LIMIT);
             if (met.object != NOTHING) | doubt {
                 break;
             }
@@ -489,7 +494,7 @@ fn ray_trace(ray: Ray) -> Traced {
         rays += 1u;
 //#if certified
         let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
-        doubt |= !met_sure(met);
+        doubt |= !met_sure(met) | (branch.beam.dir_error > DIR_LIMIT);
 //#else
         let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), 1u);
 //#end

@@ -639,7 +639,7 @@ mod layout {
             specular,
             power,
             tint,
-            unused
+            kept
         );
         same_layout!(
             module,

@@ -26,7 +26,7 @@ pub const LENGTH_ROUNDINGS: f64 = 20.0;
 /// See [`LENGTH_ROUNDINGS`].
 pub const DIR_ROUNDINGS: f64 = 12.0;
 /// See [`LENGTH_ROUNDINGS`].
-pub const VALUE_ROUNDINGS: f64 = 12.0;
+pub const VALUE_ROUNDINGS: f64 = 13.0;
 
 /// The constants that the shader's text refers to by name.
 pub const NAMED: &[(&str, f64)] = &[
@@ -36,6 +36,8 @@ pub const NAMED: &[(&str, f64)] = &[
     // Secondary hits farther than this are left to the CPU, and primary ones beyond its inverse.
     ("FARTHEST", (1_u64 << 40) as f64),
     ("LEAST_INVERSE", 1.0 / (1_u64 << 40) as f64),
+    // Directions that are known less well than this are not followed: the bounds are first order there.
+    ("DIR_LIMIT", 1.0 / 128.0),
     ("PLANE_ROUNDINGS", 6.0),
     ("POSITION_ROUNDINGS", 5.0),
     ("PERPENDICULAR_ROUNDINGS", 12.0),

@@ -200,6 +200,8 @@ fn error_constants(packed: &Packed, names: &BTreeSet<&str>) -> Vec<String> {
         bounds::VALUE_ROUNDINGS * spread * bounds::U,
     ));
     lines.push(format!("const DARK = {};", literal(packed.dark)));
+    let most = (0.9 / f64::from(packed.dark)).min(f64::from(f32::MAX));
+    lines.push(line("BRIGHT", most));
     lines.push(line("BVH_SIZE", f64::from(packed.tree_size)));
     lines
 }

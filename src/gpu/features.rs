@@ -181,9 +181,18 @@ impl FeatureSet {
                 lit.spheres && (lit.mirror || lit.clear || self.bvh),
             ),
             ("bvh", self.bvh),
-            ("widened", self.bvh && is_lit && certified),
+            ("widened", self.bvh && certified),
+            ("world_widened", self.bvh && is_lit && certified),
+            // Where the error of a hit goes on into positions.
+            (
+                "first_order",
+                certified && !is_lit && (tiled || textured || pplane || psphere),
+            ),
             ("certified", certified),
-            ("barrier", (certified && (is_lit || sphere_point)) || is_lit),
+            (
+                "barrier",
+                is_lit || pplane || psphere || (certified && self.spheres),
+            ),
             ("groups", self.groups && certified),
             ("index", certified && (tiled || textured || pplane)),
             (

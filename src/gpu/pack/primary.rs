@@ -200,7 +200,8 @@ fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Optio
     let slope = (d * d / a + e * e / c).sqrt();
     let delta = 0.1 * mu;
     let root = (slope + (slope * slope + 4.0 * (mu - delta) * f).sqrt()) / (2.0 * (mu - delta));
-    let reach = [root / a.sqrt(), root / c.sqrt()].map(|r| r * (1.0 + 1e-9));
+    // At least a pixel: the bounds of coordinates between pixels are for such.
+    let reach = [root / a.sqrt(), root / c.sqrt()].map(|r| (r * (1.0 + 1e-9)).max(1.0));
     let [x, y] = reach;
     let terms = a * x * x + b * x * y + c * y * y + d * x + e * y + f;
     let w = ray(camera, anchor);
