@@ -1,0 +1,42 @@
+//! The error bounds of the shaders, on the GPU: what they bound is within them, they are no larger than they need to be, and
+//! without them pixels that are called certain are wrong. Without an adapter these tests fail.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "the tables, with --nocapture")]
+
+mod support;
+mod world;
+
+use world::{Beams, World};
+
+/// Operands for each running bound.
+const MANY: usize = 1 << 18;
+
+#[test]
+fn rays_from_anywhere() {
+    let gpu = support::open();
+    let world = World::many();
+    println!("{}", gpu.name);
+    let seen = [
+        world::planes(&gpu, &world, &world.wgsl, Beams::Exact, MANY, "plane_hits_from, exact ray"),
+        world::planes(&gpu, &world, &world.wgsl, Beams::Off, MANY, "plane_hits_from, ray is off"),
+    ];
+    let [a, b] = world::spheres(
+        &gpu,
+        &world,
+        &world.wgsl,
+        Beams::Exact,
+        MANY,
+        ["sphere_hits_from, exact ray", "sphere_met, exact ray"],
+    );
+    let [c, d] = world::spheres(
+        &gpu,
+        &world,
+        &world.wgsl,
+        Beams::Off,
+        MANY,
+        ["sphere_hits_from, ray is off", "sphere_met, ray is off"],
+    );
+    for seen in seen.iter().chain([&a, &b, &c, &d]) {
+        seen.judge(20_000, 0.02);
+    }
+}
