@@ -3,9 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the tables, with --nocapture")]
 
+mod primary;
 mod support;
 mod world;
 
+use primary::Picture;
+use support::Seen;
 use world::{Beams, World};
 
 /// Operands for each running bound.
@@ -37,6 +40,23 @@ fn rays_from_anywhere() {
         ["sphere_hits_from, ray is off", "sphere_met, ray is off"],
     );
     for seen in seen.iter().chain([&a, &b, &c, &d]) {
+        seen.judge(20_000, 0.02);
+    }
+}
+
+#[test]
+fn primary_rays() {
+    let gpu = support::open();
+    let mut camera = ["camera_getdir w", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"].map(Seen::new);
+    let mut planes = ["plane_hits", "rectangle_hits"].map(Seen::new);
+    let mut spheres = ["sphere_hits", "sphere_normal"].map(Seen::new);
+    for picture in Picture::all() {
+        let wgsl = &picture.world.wgsl;
+        picture.camera(&gpu, wgsl, MANY / 2, &mut camera);
+        picture.planes(&gpu, wgsl, MANY / 2, &mut planes);
+        picture.spheres(&gpu, wgsl, MANY / 2, &mut spheres);
+    }
+    for seen in camera.iter().chain(&planes).chain(&spheres) {
         seen.judge(20_000, 0.02);
     }
 }
