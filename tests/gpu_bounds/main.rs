@@ -5,6 +5,7 @@
 
 mod primary;
 mod support;
+mod surfaces;
 mod world;
 
 use primary::Picture;
@@ -57,6 +58,20 @@ fn primary_rays() {
         picture.spheres(&gpu, wgsl, MANY / 2, &mut spheres);
     }
     for seen in camera.iter().chain(&planes).chain(&spheres) {
+        seen.judge(20_000, 0.02);
+    }
+}
+
+#[test]
+fn at_a_hit_point() {
+    let gpu = support::open();
+    let world = World::many();
+    let wgsl = &world.wgsl;
+    let mut seen = vec![surfaces::tiles(&gpu, &world, wgsl, MANY)];
+    seen.extend(surfaces::blocks(&gpu, &world, wgsl, MANY));
+    seen.extend(surfaces::wheel(&gpu, wgsl, MANY));
+    seen.extend(surfaces::glint(&gpu, wgsl, MANY));
+    for seen in seen {
         seen.judge(20_000, 0.02);
     }
 }
