@@ -3,6 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the tables, with --nocapture")]
 
+#[path = "../common/mod.rs"]
+mod common;
+mod faults;
+mod pictures;
 mod primary;
 mod support;
 mod surfaces;
@@ -21,8 +25,22 @@ fn rays_from_anywhere() {
     let world = World::many();
     println!("{}", gpu.name);
     let seen = [
-        world::planes(&gpu, &world, &world.wgsl, Beams::Exact, MANY, "plane_hits_from, exact ray"),
-        world::planes(&gpu, &world, &world.wgsl, Beams::Off, MANY, "plane_hits_from, ray is off"),
+        world::planes(
+            &gpu,
+            &world,
+            &world.wgsl,
+            Beams::Exact,
+            MANY,
+            "plane_hits_from, exact ray",
+        ),
+        world::planes(
+            &gpu,
+            &world,
+            &world.wgsl,
+            Beams::Off,
+            MANY,
+            "plane_hits_from, ray is off",
+        ),
     ];
     let [a, b] = world::spheres(
         &gpu,
@@ -48,7 +66,13 @@ fn rays_from_anywhere() {
 #[test]
 fn primary_rays() {
     let gpu = support::open();
-    let mut camera = ["camera_getdir w", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"].map(Seen::new);
+    let mut camera = [
+        "camera_getdir w",
+        "LENGTH_ERROR",
+        "DIR_ERROR",
+        "VALUE_ERROR",
+    ]
+    .map(Seen::new);
     let mut planes = ["plane_hits", "rectangle_hits"].map(Seen::new);
     let mut spheres = ["sphere_hits", "sphere_normal"].map(Seen::new);
     for picture in Picture::all() {
@@ -67,11 +91,52 @@ fn at_a_hit_point() {
     let gpu = support::open();
     let world = World::many();
     let wgsl = &world.wgsl;
-    let mut seen = vec![surfaces::tiles(&gpu, &world, wgsl, MANY)];
-    seen.extend(surfaces::blocks(&gpu, &world, wgsl, MANY));
+    let mut seen = Vec::from(surfaces::tiles(&gpu, &world, wgsl, MANY));
+    seen.extend(
+        surfaces::blocks(&gpu, &world, wgsl, MANY)
+            .into_iter()
+            .flatten(),
+    );
     seen.extend(surfaces::wheel(&gpu, wgsl, MANY));
     seen.extend(surfaces::glint(&gpu, wgsl, MANY));
     for seen in seen {
         seen.judge(20_000, 0.02);
+    }
+}
+
+#[test]
+fn without_a_bound() {
+    let gpu = support::open();
+    let mut found = faults::running(&gpu);
+    found.extend(faults::literal(&gpu));
+    for (name, violations) in &found {
+        println!("{name:<34} {violations:>8}");
+    }
+}
+
+#[test]
+fn whole_pictures_without_bounds() {
+    let gpu = support::open();
+    for path in common::good_scenes() {
+        let start = std::time::Instant::now();
+        let mut scene = common::read(&path);
+        let [w, h] = scene.camera.pixeldim;
+        if w * h > 20_000 {
+            scene.camera.pixeldim = [160.min(w), 120.min(h)];
+        }
+        if path.to_str().unwrap().contains("half_mirrors_three") {
+            continue;
+        }
+        let (rgb, _) = common::picture(&scene, &common::on(plumb::render::Backend::Cpu));
+        let settings = common::on(plumb::render::Backend::Gpu);
+        let with = pictures::count(&gpu, &scene, &settings, true, &rgb);
+        let without = pictures::count(&gpu, &scene, &settings, false, &rgb);
+        println!(
+            "{:<30} {:?} {:?} {:.2}",
+            path.file_stem().unwrap().display(),
+            with.map(|c| (c.pixels, c.sure, c.wrong)),
+            without.map(|c| (c.sure, c.wrong)),
+            start.elapsed().as_secs_f64()
+        );
     }
 }

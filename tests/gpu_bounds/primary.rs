@@ -84,9 +84,24 @@ impl Picture {
             viewpoint: view.into(),
         };
         vec![
-            Self::new(camera([640, 480], [8.0, 6.0], [3.7, 2.9, 6.3]), 1, Spread::Hash, 11),
-            Self::new(camera([1920, 1080], [16.0, 9.0], [-7.3, 11.1, 5.9]), 4, Spread::Course, 12),
-            Self::new(camera([311, 177], [3.1, 1.9], [1.7, 0.4, 0.7]), 4, Spread::Hash, 13),
+            Self::new(
+                camera([640, 480], [8.0, 6.0], [3.7, 2.9, 6.3]),
+                1,
+                Spread::Hash,
+                11,
+            ),
+            Self::new(
+                camera([1920, 1080], [16.0, 9.0], [-7.3, 11.1, 5.9]),
+                4,
+                Spread::Course,
+                12,
+            ),
+            Self::new(
+                camera([311, 177], [3.1, 1.9], [1.7, 0.4, 0.7]),
+                4,
+                Spread::Hash,
+                13,
+            ),
         ]
     }
 
@@ -121,7 +136,11 @@ impl Picture {
     }
 
     fn any_pixel(&self, rng: &mut Rng) -> [i32; 2] {
-        self.world.scene.camera.pixeldim.map(|n| rng.below(n as usize) as i32)
+        self.world
+            .scene
+            .camera
+            .pixeldim
+            .map(|n| rng.below(n as usize) as i32)
     }
 
     /// Rays through pixels, as the shader is told about them with a record's number, and truly.
@@ -197,13 +216,20 @@ impl Picture {
             let n = objects.len();
             let camera = &self.world.scene.camera;
             let (items, rays) = self.rays(count, |rng, i| {
-                let Shape::Plane { normal, point, extent } = &self.world.scene.objects[objects[i % n] as usize].shape else {
+                let Shape::Plane {
+                    normal,
+                    point,
+                    extent,
+                } = &self.world.scene.objects[objects[i % n] as usize].shape
+                else {
                     panic!("no plane")
                 };
                 match extent {
                     Some(e) if rng.chance(0.7) => {
                         let across = e.xdir.normalize() * e.dimensions.x * rng.uniform(-0.1, 1.1);
-                        let up = normal.cross(e.xdir).normalize() * e.dimensions.y * rng.uniform(-0.1, 1.1);
+                        let up = normal.cross(e.xdir).normalize()
+                            * e.dimensions.y
+                            * rng.uniform(-0.1, 1.1);
                         self.pixel_of(*point + across + up)
                     }
                     _ => self.any_pixel(rng),
@@ -216,7 +242,12 @@ impl Picture {
             );
             let answers = run(gpu, wgsl, &body, &items, &inputs[kind..=kind], count, 1);
             for (i, (answer, w)) in answers.iter().zip(rays).enumerate() {
-                let Shape::Plane { normal, point, extent } = &self.world.scene.objects[objects[i % n] as usize].shape else {
+                let Shape::Plane {
+                    normal,
+                    point,
+                    extent,
+                } = &self.world.scene.objects[objects[i % n] as usize].shape
+                else {
                     panic!("no plane")
                 };
                 let normal = normal.normalize();
@@ -246,10 +277,12 @@ impl Picture {
         let truth: Vec<_> = packed
             .spheres
             .iter()
-            .map(|s| match self.world.scene.objects[s.object as usize].shape {
-                Shape::Sphere { center, radius } => (center, radius),
-                Shape::Plane { .. } => panic!("no sphere"),
-            })
+            .map(
+                |s| match self.world.scene.objects[s.object as usize].shape {
+                    Shape::Sphere { center, radius } => (center, radius),
+                    Shape::Plane { .. } => panic!("no sphere"),
+                },
+            )
             .collect();
         let (items, rays) = self.rays(count, |rng, i| {
             let (center, radius) = truth[i % n];

@@ -91,9 +91,7 @@ impl TrueBeam {
         Self {
             base,
             dir,
-            told: [
-                a, b, c, 0.0, d, e, f, base_error, dir_error, size, 0.0, 0.0,
-            ],
+            told: [a, b, c, 0.0, d, e, f, base_error, dir_error, size, 0.0, 0.0],
         }
     }
 

@@ -17,12 +17,19 @@ fn assert_has(wgsl: &str, lines: &[&str]) {
     }
 }
 
-/// A point that may be off by as much as it is said to be, as the shader has it; and truly, from the viewpoint.
-fn point(rng: &mut Rng, items: &mut Vec<f32>) -> DVec3 {
+/// A point as the shader has it, and truly, from the viewpoint: every other one is exact, and they may be off by as much as
+/// they are said to be.
+fn point(rng: &mut Rng, items: &mut Vec<f32>, number: usize) -> DVec3 {
     let size = rng.log(-1.0, 3.0);
-    let truth = rng.within(size);
+    let (told, near) = rounded(rng.within(size));
     let way = rng.unit();
-    let (told, near) = rounded(truth + way * if rng.chance(0.5) { 0.0 } else { rng.log(-7.0, -2.0) });
+    let truth = near
+        + way
+            * if number % 2 == 0 {
+                0.0
+            } else {
+                rng.log(-7.0, -2.0)
+            };
     items.extend(told);
     items.push(up((near - truth).length()));
     truth
@@ -64,7 +71,7 @@ fn index(seen: &mut Seen, off: f64, bound: f64) {
 }
 
 /// Indices of tiles.
-pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> Seen {
+pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen; 2] {
     assert_has(
         wgsl,
         &[
@@ -73,9 +80,10 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> Seen 
         ],
     );
     let objects = modulated(world, 1);
-    let n = objects.len();
+    // An odd number, so that every record gets points of both kinds.
+    let n = (objects.len() - 1) | 1;
     let (mut rng, mut items) = (Rng(6), Vec::new());
-    let points: Vec<_> = (0..count).map(|_| point(&mut rng, &mut items)).collect();
+    let points: Vec<_> = (0..count).map(|i| point(&mut rng, &mut items, i)).collect();
     let body = format!(
         "{POINT}
     let plane = tiled_planes[i % {n}u];
@@ -84,19 +92,30 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> Seen 
     answers[i] = vec4f(index, plane.spread * index_error(point) + plane.errors);"
     );
     let records = &world.packed.tiled_planes;
-    assert_eq!(records.len(), n);
+    assert_eq!(records.len(), objects.len());
     let inputs = [(8, bytemuck::cast_slice(records))];
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 1);
-    let mut seen = Seen::new("index of a tile");
+    let mut seen = [
+        "index of a tile, exact point",
+        "index of a tile, point is off",
+    ]
+    .map(Seen::new);
     for (i, (answer, p)) in answers.iter().zip(points).enumerate() {
-        let (Surface::Tiled { dimension, xdir, .. }, Shape::Plane { normal, .. }) =
-            (objects[i % n].surface, &objects[i % n].shape)
+        let (
+            Surface::Tiled {
+                dimension, xdir, ..
+            },
+            Shape::Plane { normal, .. },
+        ) = (objects[i % n].surface, &objects[i % n].shape)
         else {
             panic!("no tiles")
         };
         let hit = p * UNIT + VIEWPOINT;
         let truth = match xdir {
-            None => [(hit.x + 10_000.0) / dimension.x, (hit.z + 10_000.0) / dimension.y],
+            None => [
+                (hit.x + 10_000.0) / dimension.x,
+                (hit.z + 10_000.0) / dimension.y,
+            ],
             Some(xdir) => {
                 let rows: [V3<f64>; 2] = rows(*normal, xdir);
                 [
@@ -111,7 +130,11 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> Seen 
         for k in 0..2 {
             // Along the plane's own coordinate there is nothing to decide.
             if rows[k] != [0.0; 3] {
-                index(&mut seen, apart(answer[k], truth[k], 1.0), answer[k + 2]);
+                index(
+                    &mut seen[i % 2],
+                    apart(answer[k], truth[k], 1.0),
+                    answer[k + 2],
+                );
             }
         }
     }
@@ -119,7 +142,7 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> Seen 
 }
 
 /// Indices of blocks, and the components of H − point.
-pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen; 2] {
+pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [[Seen; 2]; 2] {
     assert_has(
         wgsl,
         &[
@@ -128,9 +151,10 @@ pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [See
         ],
     );
     let objects = modulated(world, 64 + 2);
-    let n = objects.len();
+    // An odd number, so that every record gets points of both kinds.
+    let n = (objects.len() - 1) | 1;
     let (mut rng, mut items) = (Rng(7), Vec::new());
-    let points: Vec<_> = (0..count).map(|_| point(&mut rng, &mut items)).collect();
+    let points: Vec<_> = (0..count).map(|i| point(&mut rng, &mut items, i)).collect();
     let body = format!(
         "{POINT}
     let at = PlanePoint(point, vec3f(1.0), pplanes[i % {n}u]);
@@ -141,10 +165,20 @@ pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [See
     answers[3u * i + 2u] = vec4f(pplane_from_point(at), 0.0);"
     );
     let records = &world.packed.pplanes;
-    assert_eq!(records.len(), n);
+    assert_eq!(records.len(), objects.len());
     let inputs = [(9, bytemuck::cast_slice(records))];
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 3);
-    let mut seen = ["index of a block", "pplane_from_point"].map(Seen::new);
+    let mut seen = [
+        [
+            "index of a block, exact point",
+            "index of a block, point is off",
+        ],
+        [
+            "pplane_from_point, exact point",
+            "pplane_from_point, point is off",
+        ],
+    ]
+    .map(|names| names.map(Seen::new));
     for (i, (answer, p)) in answers.chunks(3).zip(points).enumerate() {
         let record = &records[i % n];
         let hit = p * UNIT + VIEWPOINT;
@@ -157,10 +191,10 @@ pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [See
             }
             let truth = 2.0 * hit[k] + 1000.0 - f64::from(record.parity[k]);
             let off = apart(f64::from(answer[0][k]), truth, 2.0);
-            index(&mut seen[0], off, f64::from(answer[1][k]));
+            index(&mut seen[0][i % 2], off, f64::from(answer[1][k]));
             if k < 2 {
                 let off = f64::from(answer[2][k]) - (hit[k] - point[k]);
-                seen[1].error(off.abs(), f64::from(answer[2][2]));
+                seen[1][i % 2].error(off.abs(), f64::from(answer[2][2]));
             }
         }
     }
@@ -180,7 +214,11 @@ pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
                 angle
             };
             let told = [size * angle.cos(), size * angle.sin()].map(|x| x as f32);
-            let error = if i % 2 == 0 { 0.0 } else { (size * rng.log(-7.0, -1.0)) as f32 };
+            let error = if i % 2 == 0 {
+                0.0
+            } else {
+                (size * rng.log(-7.0, -1.0)) as f32
+            };
             items.extend([told[0], told[1], error, 0.0]);
             told.map(|x| f64::from(x) + rng.sign() * f64::from(error))
         })
@@ -206,7 +244,10 @@ pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
             1.0 - 0.5 * cosine + root * sine,
         ];
         for k in 0..3 {
-            seen.error((f64::from(answer[0][k]) - colors[k]).abs(), f64::from(answer[1][k]));
+            seen.error(
+                (f64::from(answer[0][k]) - colors[k]).abs(),
+                f64::from(answer[1][k]),
+            );
         }
     }
     seen

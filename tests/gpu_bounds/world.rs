@@ -201,7 +201,8 @@ fn toward_plane(rng: &mut Rng, plane: &TruePlane, beams: Beams) -> TrueBeam {
             Some((rows, lengths)) => {
                 let mut p = [0, 1].map(|_| rng.uniform(-0.2, 1.2));
                 if rng.chance(0.3) {
-                    p[rng.below(2)] = f64::from(rng.below(2) as u32) + rng.sign() * rng.log(-8.0, -2.0);
+                    p[rng.below(2)] =
+                        f64::from(rng.below(2) as u32) + rng.sign() * rng.log(-8.0, -2.0);
                 }
                 rows[0] * p[0] * lengths.x + rows[1] * p[1] * lengths.y
             }
@@ -273,7 +274,8 @@ pub(crate) fn planes(
             beam
         })
         .collect();
-    let body = format!("{CALL}let m = plane_hits_from(world_planes[record], beam, range);{MEETING}");
+    let body =
+        format!("{CALL}let m = plane_hits_from(world_planes[record], beam, range);{MEETING}");
     let inputs = [(14, bytemuck::cast_slice(records))];
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 3);
     let mut seen = Seen::new(name);
@@ -284,7 +286,8 @@ pub(crate) fn planes(
         let axis = plane.normal.abs().max_element() == 1.0 && plane.normal.z != 0.0;
         let inside = plane.sides.is_none_or(|(rows, lengths)| {
             let from = hit - plane.point;
-            (0.0..=lengths.x).contains(&from.dot(rows[0])) && (0.0..=lengths.y).contains(&from.dot(rows[1]))
+            (0.0..=lengths.x).contains(&from.dot(rows[0]))
+                && (0.0..=lengths.y).contains(&from.dot(rows[1]))
         });
         let below = axis || hit.z <= -VIEWPOINT.z / UNIT;
         judge(&mut seen, &answers[3 * i..], t > 0.0 && inside && below, t);

@@ -1,0 +1,129 @@
+//! Whole pictures: which of the pixels that a shader calls certain are wrong.
+
+use plumb::gpu::compose::{WORKGROUP, compose};
+use plumb::gpu::device::Gpu;
+use plumb::gpu::features::FeatureSet;
+use plumb::gpu::pack::{Job, Packed};
+use plumb::gpu::pipeline::Pipeline;
+use plumb::render::Settings;
+use plumb::scene::Scene;
+use wgpu::util::DeviceExt as _;
+
+use crate::support::with_constant;
+
+/// Sets every bound that the host derived to zero.
+pub(crate) fn without_literal_bounds(packed: &mut Packed) {
+    packed.camera.w_error = 0.0;
+    // The lengths', directions' and values' errors are multiples of it.
+    packed.camera.spread = 0.0;
+    for plane in &mut packed.planes {
+        (plane.inverse_error, plane.front_error) = (0.0, 0.0);
+    }
+    for rectangle in &mut packed.rectangles {
+        (rectangle.inverse_error, rectangle.front_error) = (0.0, 0.0);
+        rectangle.side_errors = [0.0; 4];
+    }
+    for sphere in &mut packed.spheres {
+        (sphere.along_error, sphere.disc_error) = (0.0, 0.0);
+    }
+    for point in &mut packed.sphere_points {
+        point.form_error = 0.0;
+    }
+    for tiled in &mut packed.tiled_planes {
+        tiled.errors = [0.0; 2];
+    }
+    for pplane in &mut packed.pplanes {
+        (pplane.index_error, pplane.from_point_error) = (0.0, 0.0);
+    }
+    for texplane in &mut packed.texplanes {
+        texplane.errors = [0.0; 2];
+    }
+    for plane in packed.lit.iter_mut().flat_map(|lit| &mut lit.planes) {
+        plane.sides_error = 0.0;
+    }
+}
+
+/// How certain a shader is, and how often it is wrong then.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Count {
+    pub(crate) pixels: usize,
+    pub(crate) sure: usize,
+    pub(crate) wrong: usize,
+}
+
+/// Renders with the shader as it is, or without its bounds, and compares what is certain with `rgb`, top row first.
+pub(crate) fn count(
+    gpu: &Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    bounds: bool,
+    rgb: &[u8],
+) -> Option<Count> {
+    let mut packed = Packed::new(scene, settings);
+    let features = FeatureSet::new(&packed, settings, gpu.lanes);
+    if packed.unprovable.is_some() || !features.any_object() {
+        return None;
+    }
+    let wgsl = if bounds {
+        compose(&packed, &features)
+    } else {
+        without_literal_bounds(&mut packed);
+        with_constant(&compose(&packed, &features), "U", "0f")
+    };
+    let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl).unwrap();
+    let [width, height] = scene.camera.pixeldim;
+    let job = Job {
+        first: [0, height - 1],
+        size: [width, height],
+        zero: 0,
+        unused: 0,
+    };
+    let job = gpu
+        .device
+        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("job"),
+            contents: bytemuck::bytes_of(&job),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+    let size = u64::from(width) * u64::from(height) * 4;
+    let empty = |usage| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("pixels"),
+            size,
+            usage,
+            mapped_at_creation: false,
+        })
+    };
+    let pixels = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let staging = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let bind_group = pipeline.bind(gpu, &job, &pixels, None);
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline.pipeline);
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.dispatch_workgroups(width.div_ceil(WORKGROUP), height.div_ceil(WORKGROUP), 1);
+    }
+    encoder.copy_buffer_to_buffer(&pixels, 0, &staging, 0, size);
+    gpu.queue.submit([encoder.finish()]);
+    staging.map_async(wgpu::MapMode::Read, .., |_| ());
+    gpu.device
+        .poll(wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: None,
+        })
+        .unwrap();
+    gpu.check().unwrap();
+    let view = staging.get_mapped_range(..).unwrap();
+    let mut count = Count::default();
+    for (found, right) in view.chunks_exact(4).zip(rgb.chunks_exact(3)) {
+        count.pixels += 1;
+        if found[3] == 0 {
+            count.sure += 1;
+            count.wrong += usize::from(found[..3] != *right);
+        }
+    }
+    Some(count)
+}
