@@ -15,8 +15,16 @@ const COUNT: usize = 1 << 16;
 pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let world = World::many();
     let zero = |name| with_constant(&world.wgsl, name, "0f");
-    let planes =
-        |name| world::planes(gpu, &world, &zero(name), Beams::Exact, COUNT, name).violations();
+    let planes = |name| {
+        total(&world::planes(
+            gpu,
+            &world,
+            &zero(name),
+            Beams::Exact,
+            COUNT,
+            [name; 2],
+        ))
+    };
     let spheres = |name| {
         total(&world::spheres(
             gpu,
@@ -24,7 +32,7 @@ pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
             &zero(name),
             Beams::Exact,
             COUNT,
-            [name; 2],
+            [name; 3],
         ))
     };
     let mut found: Vec<(&str, usize)> = vec![
@@ -95,7 +103,7 @@ pub(crate) fn literal(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let mut planes = |name, fault: fn(&mut Packed), kind: usize| {
         let mut picture = picture();
         fault(&mut picture.world.packed);
-        let mut seen = [name; 2].map(Seen::new);
+        let mut seen = [name; 3].map(Seen::new);
         picture.planes(gpu, &picture.world.wgsl, COUNT, &mut seen);
         found.push((name, seen[kind].violations()));
     };

@@ -1,5 +1,9 @@
 //! The error bounds of the shaders, on the GPU: what they bound is within them, they are no larger than they need to be, and
 //! without them pixels that are called certain are wrong. Without an adapter these tests fail.
+//!
+//! Operands are random and adversarial; the truth is f64, whose own error is 10⁻⁸ of f32's. With `--nocapture` the tables are
+//! printed: how many values were compared, the worst and the median of |value − truth| / bound, for how many operands nothing
+//! was decided, and how many decisions were wrong.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the tables, with --nocapture")]
 
@@ -12,68 +16,64 @@ mod support;
 mod surfaces;
 mod world;
 
+use plumb::render::Backend;
+
+use pictures::Count;
 use primary::Picture;
 use support::Seen;
 use world::{Beams, World};
 
-/// Operands for each running bound.
+/// Operands for each bound.
 const MANY: usize = 1 << 18;
+/// So many of them must have been decided.
+const DECIDED: usize = 60_000;
+/// The worst ratio must be at least this, for bounds that follow a ray, and for those of a whole picture: measured are 0.09
+/// and more, and 0.04 and more. A bound far too large would do no harm but to speed.
+const TIGHT: f64 = 1.0 / 25.0;
+const TIGHT_LITERAL: f64 = 1.0 / 40.0;
+/// Where rays, points or places are off by all that they may be, bounds are nearly reached.
+const TIGHT_OFF: f64 = 0.8;
 
 #[test]
 fn rays_from_anywhere() {
     let gpu = support::open();
-    let world = World::many();
     println!("{}", gpu.name);
-    let seen = [
-        world::planes(
-            &gpu,
-            &world,
-            &world.wgsl,
-            Beams::Exact,
-            MANY,
-            "plane_hits_from, exact ray",
-        ),
-        world::planes(
-            &gpu,
-            &world,
-            &world.wgsl,
-            Beams::Off,
-            MANY,
-            "plane_hits_from, ray is off",
-        ),
+    let world = World::many();
+    let wgsl = &world.wgsl;
+    let exact = [
+        "plane_hits_from, exact ray",
+        "locate_met on planes, exact ray",
     ];
-    let [a, b] = world::spheres(
-        &gpu,
-        &world,
-        &world.wgsl,
-        Beams::Exact,
-        MANY,
-        ["sphere_hits_from, exact ray", "sphere_met, exact ray"],
-    );
-    let [c, d] = world::spheres(
-        &gpu,
-        &world,
-        &world.wgsl,
-        Beams::Off,
-        MANY,
-        ["sphere_hits_from, ray is off", "sphere_met, ray is off"],
-    );
-    for seen in seen.iter().chain([&a, &b, &c, &d]) {
-        seen.judge(20_000, 0.02);
+    let off = ["plane_hits_from, ray off", "locate_met on planes, ray off"];
+    let planes = |beams, names| world::planes(&gpu, &world, wgsl, beams, MANY, names);
+    let mut sure = Vec::from(planes(Beams::Exact, exact));
+    let mut wide = Vec::from(planes(Beams::Off, off));
+    let exact = [
+        "sphere_hits_from, exact ray",
+        "sphere_met, exact ray",
+        "locate_met on spheres, exact ray",
+    ];
+    let off = [
+        "sphere_hits_from, ray off",
+        "sphere_met, ray off",
+        "locate_met on spheres, ray off",
+    ];
+    let spheres = |beams, names| world::spheres(&gpu, &world, wgsl, beams, MANY, names);
+    sure.extend(spheres(Beams::Exact, exact));
+    wide.extend(spheres(Beams::Off, off));
+    for seen in sure {
+        seen.judge(DECIDED, TIGHT);
+    }
+    for seen in wide {
+        seen.judge(DECIDED, TIGHT_OFF);
     }
 }
 
 #[test]
 fn primary_rays() {
     let gpu = support::open();
-    let mut camera = [
-        "camera_getdir w",
-        "LENGTH_ERROR",
-        "DIR_ERROR",
-        "VALUE_ERROR",
-    ]
-    .map(Seen::new);
-    let mut planes = ["plane_hits", "rectangle_hits"].map(Seen::new);
+    let mut camera = ["W_ERROR", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"].map(Seen::new);
+    let mut planes = ["plane_hits", "rectangle_hits", "locate on planes"].map(Seen::new);
     let mut spheres = ["sphere_hits", "sphere_normal"].map(Seen::new);
     for picture in Picture::all() {
         let wgsl = &picture.world.wgsl;
@@ -82,7 +82,7 @@ fn primary_rays() {
         picture.spheres(&gpu, wgsl, MANY / 2, &mut spheres);
     }
     for seen in camera.iter().chain(&planes).chain(&spheres) {
-        seen.judge(20_000, 0.02);
+        seen.judge(DECIDED, TIGHT_LITERAL);
     }
 }
 
@@ -91,18 +91,29 @@ fn at_a_hit_point() {
     let gpu = support::open();
     let world = World::many();
     let wgsl = &world.wgsl;
-    let mut seen = Vec::from(surfaces::tiles(&gpu, &world, wgsl, MANY));
-    seen.extend(
-        surfaces::blocks(&gpu, &world, wgsl, MANY)
-            .into_iter()
-            .flatten(),
-    );
-    seen.extend(surfaces::wheel(&gpu, wgsl, MANY));
-    seen.extend(surfaces::glint(&gpu, wgsl, MANY));
-    for seen in seen {
-        seen.judge(20_000, 0.02);
+    let mut pairs = vec![
+        surfaces::tiles(&gpu, &world, wgsl, MANY),
+        surfaces::wheel(&gpu, wgsl, MANY),
+        surfaces::glint(&gpu, wgsl, MANY),
+    ];
+    pairs.extend(surfaces::blocks(&gpu, &world, wgsl, MANY));
+    for [exact, off] in pairs {
+        exact.judge(DECIDED, TIGHT);
+        off.judge(DECIDED, TIGHT_OFF);
     }
 }
+
+/// What need not be noticed: without it the other terms of its sum still cover the roundings of drivers that round to nearest,
+/// half as much as the model allows.
+const COVERED: &[&str] = &[
+    "POSITION_ROUNDINGS",
+    "DISC_ROUNDINGS",
+    "ROOT_ROUNDINGS",
+    "NORMAL_ROUNDINGS",
+    "a pplane's index_error",
+    "a sphere's along_error",
+    "a sphere's form_error",
+];
 
 #[test]
 fn without_a_bound() {
@@ -112,31 +123,56 @@ fn without_a_bound() {
     for (name, violations) in &found {
         println!("{name:<34} {violations:>8}");
     }
-}
-
-#[test]
-fn whole_pictures_without_bounds() {
-    let gpu = support::open();
-    for path in common::good_scenes() {
-        let start = std::time::Instant::now();
-        let mut scene = common::read(&path);
-        let [w, h] = scene.camera.pixeldim;
-        if w * h > 20_000 {
-            scene.camera.pixeldim = [160.min(w), 120.min(h)];
-        }
-        if path.to_str().unwrap().contains("half_mirrors_three") {
-            continue;
-        }
-        let (rgb, _) = common::picture(&scene, &common::on(plumb::render::Backend::Cpu));
-        let settings = common::on(plumb::render::Backend::Gpu);
-        let with = pictures::count(&gpu, &scene, &settings, true, &rgb);
-        let without = pictures::count(&gpu, &scene, &settings, false, &rgb);
-        println!(
-            "{:<30} {:?} {:?} {:.2}",
-            path.file_stem().unwrap().display(),
-            with.map(|c| (c.pixels, c.sure, c.wrong)),
-            without.map(|c| (c.sure, c.wrong)),
-            start.elapsed().as_secs_f64()
+    for (name, violations) in found {
+        assert!(
+            violations > 0 || COVERED.contains(&name),
+            "{name} = 0 is not noticed"
         );
     }
+}
+
+/// Scenes in which bytes, edges, ties, shadows, mirrors and textures go wrong without bounds.
+const PICTURES: &[&str] = &[
+    "gallery/procedural_all",
+    "gallery/tiles_floor",
+    "hard/coincident_tiles",
+    "hard/crossing_on_diagonal",
+    "hard/edge_frame_31x17",
+    "hard/lit_lamp_at_hit",
+    "hard/lit_panes_coplanar",
+    "hard/lit_shadow_tangent",
+    "hard/lit_spot_45",
+    "hard/pplane_2_floor_tie",
+    "hard/sphere_by_a_hair",
+    "hard/sphere_tiny_far",
+    "hard/tangent_rays",
+    "lit/kaleidoscope",
+    "lit/mirror_floor",
+    "lit/texture_repeated",
+    "lit/tiles_xdir",
+];
+
+#[test]
+fn whole_pictures() {
+    let gpu = support::open();
+    let (mut with, mut without, mut noticed) = (Count::default(), Count::default(), 0);
+    for name in PICTURES {
+        let mut scene = common::read(&common::scenes().join(name).with_extension("txt"));
+        let [width, height] = scene.camera.pixeldim;
+        if width * height > 20_000 {
+            scene.camera.pixeldim = [160.min(width), 120.min(height)];
+        }
+        let (rgb, _) = common::picture(&scene, &common::on(Backend::Cpu));
+        let settings = common::on(Backend::Gpu);
+        let count = |bounds| pictures::count(&gpu, &scene, &settings, bounds, &rgb);
+        let (right, bare) = (count(true), count(false));
+        println!("{name:<28} {right:?}\n{:<28} {bare:?}", "  without bounds");
+        assert_eq!(right.wrong, 0, "{name}: certain, and wrong");
+        noticed += usize::from(bare.wrong > 0);
+        with += right;
+        without += bare;
+    }
+    println!("{with:?}, without bounds {without:?} in {noticed} pictures");
+    assert!(4 * with.sure > 3 * with.pixels, "little is certain");
+    assert!(without.wrong > 100 && 2 * noticed > PICTURES.len());
 }

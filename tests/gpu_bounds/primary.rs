@@ -22,7 +22,7 @@ fn scene(rng: &mut Rng, camera: Camera) -> Scene {
             xdir: normal.cross(rng.unit()),
             dimensions: DVec2::splat(far) * rng.uniform(0.2, 2.0),
         });
-        let surface = Surface::Plain;
+        let surface = Surface::Procedural { shader: 0 };
         let shape = Shape::Plane {
             normal,
             point,
@@ -105,15 +105,18 @@ impl Picture {
         ]
     }
 
-    /// A place in a pixel where a ray may pass, and what the shader is told of it.
-    fn offset(&self, rng: &mut Rng) -> (DVec2, [f32; 2]) {
-        let mut one = || match (self.samples, self.spread) {
-            (1, _) => 0.0,
-            (_, Spread::Hash) => rng.below(1024) as f64 / 1024.0 - 0.5,
-            (_, Spread::Course) => rng.uniform(-0.5, 0.5),
+    /// The place nearest to `at`, in pixels, where a ray may pass: its pixel, its place in it, and what the shader is told of that.
+    fn place(&self, at: DVec2) -> ([i32; 2], DVec2, [f32; 2]) {
+        let most = self.world.scene.camera.pixeldim.map(|n| f64::from(n - 1));
+        let pixel = at.round().clamp(DVec2::ZERO, DVec2::from_array(most));
+        let offset = (at - pixel).clamp(DVec2::splat(-0.5), DVec2::splat(0.499));
+        let offset = match (self.samples, self.spread) {
+            (1, _) => DVec2::ZERO,
+            (_, Spread::Hash) => (offset * 1024.0).round() / 1024.0,
+            (_, Spread::Course) => offset,
         };
-        let offset = DVec2::new(one(), one());
-        (offset, offset.to_array().map(|x| x as f32))
+        let told = offset.to_array().map(|x| x as f32);
+        (pixel.to_array().map(|p| p as i32), offset, told)
     }
 
     /// The true direction to a place on the screen, in pixels.
@@ -123,37 +126,30 @@ impl Picture {
         ((pixel * camera.worlddim / steps).extend(0.0) - camera.viewpoint) / self.unit
     }
 
-    /// The pixel in which a point is seen, or the nearest one.
-    fn pixel_of(&self, point: DVec3) -> [i32; 2] {
+    /// Where on the screen a point is seen, in pixels.
+    fn seen_at(&self, point: DVec3) -> DVec2 {
         let camera = &self.world.scene.camera;
         let from = point - camera.viewpoint;
         let at = camera.viewpoint - from * (camera.viewpoint.z / from.z.min(-1e-9));
-        let axis = |i: usize| {
-            let most = f64::from(camera.pixeldim[i] - 1);
-            (at[i] / camera.worlddim[i] * most).round().clamp(0.0, most) as i32
-        };
-        [axis(0), axis(1)]
+        let steps = DVec2::from_array(camera.pixeldim.map(|n| f64::from(n - 1)));
+        at.truncate() / camera.worlddim * steps
     }
 
-    fn any_pixel(&self, rng: &mut Rng) -> [i32; 2] {
-        self.world
-            .scene
-            .camera
-            .pixeldim
-            .map(|n| rng.below(n as usize) as i32)
+    fn anywhere(&self, rng: &mut Rng) -> DVec2 {
+        let steps = self.world.scene.camera.pixeldim.map(|n| f64::from(n - 1));
+        DVec2::from_array(steps.map(|n| rng.uniform(-0.5, n + 0.5)))
     }
 
     /// Rays through pixels, as the shader is told about them with a record's number, and truly.
     fn rays(
         &self,
         count: usize,
-        mut choose: impl FnMut(&mut Rng, usize) -> [i32; 2],
+        mut choose: impl FnMut(&mut Rng, usize) -> DVec2,
     ) -> (Vec<f32>, Vec<DVec3>) {
         let mut rng = Rng(5);
         let mut items = Vec::new();
         let rays = (0..count).map(|i| {
-            let pixel = choose(&mut rng, i);
-            let (offset, told) = self.offset(&mut rng);
+            let (pixel, offset, told) = self.place(choose(&mut rng, i));
             items.extend(pixel.map(|p| p as f32));
             items.extend(told);
             self.ray(DVec2::from_array(pixel.map(f64::from)) + offset)
@@ -175,7 +171,7 @@ impl Picture {
     pub(crate) fn camera(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 4]) {
         const LINE: &str = "traced.color = ambient.color * (share * hit.inverse);";
         assert!(wgsl.contains(LINE), "the value is no longer made so");
-        let (items, rays) = self.rays(count, |rng, _| self.any_pixel(rng));
+        let (items, rays) = self.rays(count, |rng, _| self.anywhere(rng));
         let body = format!(
             "{}
     answers[4u * i] = vec4f(ray.w, W_ERROR);
@@ -200,17 +196,29 @@ impl Picture {
         }
     }
 
-    /// Planes and rectangles.
-    pub(crate) fn planes(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 2]) {
+    /// What the shader makes a point of a hit with.
+    fn point_inputs<'a>(&'a self, job: &'a [u8]) -> Vec<(u32, &'a [u8])> {
+        let packed = &self.world.packed;
+        vec![
+            (0, job),
+            (2, bytemuck::cast_slice(&packed.objects)),
+            (5, bytemuck::cast_slice(&packed.spheres)),
+            (6, bytemuck::cast_slice(&packed.sphere_points)),
+        ]
+    }
+
+    /// Planes and rectangles, and points on them.
+    pub(crate) fn planes(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 3]) {
         let packed = &self.world.packed;
         let planes = packed.planes.iter().map(|p| p.object);
         let rectangles = packed.rectangles.iter().map(|r| r.object);
         let both: [Vec<u32>; 2] = [planes.collect(), rectangles.collect()];
-        let inputs: [(u32, &[u8]); 2] = [
+        let records: [(u32, &[u8]); 2] = [
             (3, bytemuck::cast_slice(&packed.planes)),
             (4, bytemuck::cast_slice(&packed.rectangles)),
         ];
-        let calls = ["plane_hits(planes", "rectangle_hits(rectangles"];
+        let calls = [("plane_hits", "planes"), ("rectangle_hits", "rectangles")];
+        let job = job();
         for kind in 0..2 {
             let objects = &both[kind];
             let n = objects.len();
@@ -226,22 +234,41 @@ impl Picture {
                 };
                 match extent {
                     Some(e) if rng.chance(0.7) => {
-                        let across = e.xdir.normalize() * e.dimensions.x * rng.uniform(-0.1, 1.1);
-                        let up = normal.cross(e.xdir).normalize()
-                            * e.dimensions.y
-                            * rng.uniform(-0.1, 1.1);
-                        self.pixel_of(*point + across + up)
+                        let mut share = [0, 1].map(|_| rng.uniform(-0.1, 1.1));
+                        if rng.chance(0.5) {
+                            // To an edge, or next to it.
+                            share[rng.below(2)] =
+                                rng.below(2) as f64 + rng.sign() * rng.log(-9.0, -3.0);
+                        }
+                        let n = normal.normalize();
+                        let first = (e.xdir - n * n.dot(e.xdir)).normalize();
+                        let sides = [first, n.cross(first)];
+                        self.seen_at(
+                            *point
+                                + sides[0] * e.dimensions.x * share[0]
+                                + sides[1] * e.dimensions.y * share[1],
+                        )
                     }
-                    _ => self.any_pixel(rng),
+                    _ => self.anywhere(rng),
                 }
             });
+            let (call, record) = calls[kind];
             let body = format!(
-                "{}\nlet c = {}[i % {n}u], ray);{CANDIDATE}",
-                self.begin(),
-                calls[kind]
+                "{}
+    let c = {call}({record}[i % {n}u], ray);
+    var h: Hit;
+    h.inverse = c.inverse;
+    h.error = c.error;
+    h.object = {record}[i % {n}u].object;
+    let p = locate(ray, h);
+    answers[2u * i + 1u] = vec4f(p.position, p.error);
+    {CANDIDATE}",
+                self.begin()
             );
-            let answers = run(gpu, wgsl, &body, &items, &inputs[kind..=kind], count, 1);
-            for (i, (answer, w)) in answers.iter().zip(rays).enumerate() {
+            let mut inputs = self.point_inputs(&job);
+            inputs.push(records[kind]);
+            let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
+            for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
                 let Shape::Plane {
                     normal,
                     point,
@@ -253,7 +280,7 @@ impl Picture {
                 let normal = normal.normalize();
                 let point = (*point - camera.viewpoint) / self.unit;
                 let inverse = normal.dot(w) / normal.dot(point);
-                let [found, error, hit, possible] = answer.map(f64::from);
+                let [found, error, hit, possible] = answer[0].map(f64::from);
                 seen[kind].error((found - inverse).abs(), error);
                 if inverse > 0.0 {
                     let s = 1.0 / inverse;
@@ -264,6 +291,11 @@ impl Picture {
                             && (0.0..=d.y).contains(&from.dot(normal.cross(first)))
                     });
                     seen[kind].decision(hit == 1.0, possible == 1.0, inside && s >= 1.0);
+                    // Nothing is made of a point whose 1/s may be 0.
+                    if hit == 1.0 && found > 4.0 * error {
+                        let [x, y, z, error] = answer[1].map(f64::from);
+                        seen[2].error((DVec3::new(x, y, z) - w * s).length(), error);
+                    }
                 }
             }
         }
@@ -289,14 +321,15 @@ impl Picture {
             let to_center = (center - camera.viewpoint).normalize();
             // To the outline, to the sphere, anywhere.
             match rng.below(8) {
-                0 => self.any_pixel(rng),
+                0 => self.anywhere(rng),
                 1..4 => {
                     let across = to_center.cross(rng.unit()).normalize();
                     let rho = radius / center.distance(camera.viewpoint);
                     let outline = across * (1.0 - rho * rho).max(0.0).sqrt() - to_center * rho;
-                    self.pixel_of(center + outline * radius)
+                    let near = 1.0 + rng.sign() * rng.log(-9.0, -3.0);
+                    self.seen_at(center + outline * radius * near)
                 }
-                _ => self.pixel_of(center + rng.unit() * radius),
+                _ => self.seen_at(center + rng.unit() * radius),
             }
         });
         let body = format!(
@@ -308,7 +341,7 @@ impl Picture {
     answers[2u * i + 1u] = sphere_normal(i % {n}u, ray, h);
     {}",
             self.begin(),
-            CANDIDATE.replace("[i]", "[2u * i]")
+            CANDIDATE
         );
         let job = job();
         let inputs = [
@@ -340,5 +373,5 @@ impl Picture {
 }
 
 const CANDIDATE: &str = "
-    answers[i] = vec4f(c.inverse, c.error, select(0.0, 1.0, c.hit), select(0.0, 1.0, c.possible));
+    answers[2u * i] = vec4f(c.inverse, c.error, select(0.0, 1.0, c.hit), select(0.0, 1.0, c.possible));
 ";

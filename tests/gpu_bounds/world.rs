@@ -227,8 +227,14 @@ const CALL: &str = "
 ";
 
 const MEETING: &str = "
-    answers[3u * i] = vec4f(m.t, m.error, m.low, m.high);
-    answers[3u * i + 1u] = vec4f(select(0.0, 1.0, m.hit), select(0.0, 1.0, m.possible), 0.0, 0.0);
+    answers[4u * i] = vec4f(m.t, m.error, m.low, m.high);
+    answers[4u * i + 1u] = vec4f(select(0.0, 1.0, m.hit), select(0.0, 1.0, m.possible), 0.0, 0.0);
+    var met: Met;
+    met.t = m.t;
+    met.error = m.error;
+    met.object = object;
+    let p = locate_met(beam, met);
+    answers[4u * i + 3u] = vec4f(p.position, p.error);
 ";
 
 fn told(items: &mut Vec<f32>, beam: &TrueBeam, record: usize) {
@@ -251,14 +257,32 @@ fn judge(seen: &mut Seen, answers: &[[f32; 4]], hits: bool, t: f64) -> bool {
     sure
 }
 
+/// Where the shader says that a ray meets a surface.
+fn place(seen: &mut Seen, answer: [f32; 4], truth: DVec3) {
+    let [x, y, z, error] = answer.map(f64::from);
+    seen.error((DVec3::new(x, y, z) - truth).length(), error);
+}
+
+/// What the shader makes a point of a meeting with.
+fn inputs<'a>(world: &'a World, job: &'a [u8]) -> [(u32, &'a [u8]); 4] {
+    let lit = world.packed.lit.as_ref().unwrap();
+    [
+        (0, job),
+        (2, bytemuck::cast_slice(&lit.objects)),
+        (14, bytemuck::cast_slice(&lit.planes)),
+        (15, bytemuck::cast_slice(&lit.spheres)),
+    ]
+}
+
+/// Meetings with planes and rectangles, and where they are, where they are certain.
 pub(crate) fn planes(
     gpu: &Gpu,
     world: &World,
     wgsl: &str,
     beams: Beams,
     count: usize,
-    name: &'static str,
-) -> Seen {
+    names: [&'static str; 2],
+) -> [Seen; 2] {
     let records = &world.packed.lit.as_ref().unwrap().planes;
     let truth: Vec<_> = records
         .iter()
@@ -274,11 +298,14 @@ pub(crate) fn planes(
             beam
         })
         .collect();
-    let body =
-        format!("{CALL}let m = plane_hits_from(world_planes[record], beam, range);{MEETING}");
-    let inputs = [(14, bytemuck::cast_slice(records))];
-    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 3);
-    let mut seen = Seen::new(name);
+    let body = format!(
+        "{CALL}let m = plane_hits_from(world_planes[record], beam, range);
+    let object = world_planes[record].object;{MEETING}"
+    );
+    let job = job();
+    let inputs = inputs(world, &job);
+    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
+    let [mut seen, mut points] = names.map(Seen::new);
     for (i, beam) in rays.iter().enumerate() {
         let plane = &truth[i % records.len()];
         let t = plane.normal.dot(plane.point - beam.base) / plane.normal.dot(beam.dir);
@@ -290,9 +317,11 @@ pub(crate) fn planes(
                 && (0.0..=lengths.y).contains(&from.dot(rows[1]))
         });
         let below = axis || hit.z <= -VIEWPOINT.z / UNIT;
-        judge(&mut seen, &answers[3 * i..], t > 0.0 && inside && below, t);
+        if judge(&mut seen, &answers[4 * i..], t > 0.0 && inside && below, t) {
+            place(&mut points, answers[4 * i + 3], hit);
+        }
     }
-    seen
+    [seen, points]
 }
 
 /// A ray past the sphere's middle, or past its edge, from near or far, from inside, from the sphere itself.
@@ -315,15 +344,15 @@ fn toward_sphere(rng: &mut Rng, center: DVec3, radius: f64, beams: Beams) -> Tru
     beam(rng, beams, base, dir, across)
 }
 
-/// Meetings with spheres, and the normals where they are certain.
+/// Meetings with spheres, and the normals and places where they are certain.
 pub(crate) fn spheres(
     gpu: &Gpu,
     world: &World,
     wgsl: &str,
     beams: Beams,
     count: usize,
-    names: [&'static str; 2],
-) -> [Seen; 2] {
+    names: [&'static str; 3],
+) -> [Seen; 3] {
     let records = &world.packed.lit.as_ref().unwrap().spheres;
     let truth: Vec<_> = records
         .iter()
@@ -343,13 +372,14 @@ pub(crate) fn spheres(
         })
         .collect();
     let body = format!(
-        "{CALL}let m = sphere_hits_from(world_spheres[record], beam, range);{MEETING}
-    answers[3u * i + 2u] = sphere_met(world_spheres[record], beam);"
+        "{CALL}let m = sphere_hits_from(world_spheres[record], beam, range);
+    let object = world_spheres[record].object;{MEETING}
+    answers[4u * i + 2u] = sphere_met(world_spheres[record], beam);"
     );
     let job = job();
-    let inputs = [(0, job.as_slice()), (15, bytemuck::cast_slice(records))];
-    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 3);
-    let [mut meetings, mut normals] = names.map(Seen::new);
+    let inputs = inputs(world, &job);
+    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
+    let [mut meetings, mut normals, mut points] = names.map(Seen::new);
     for (i, beam) in rays.iter().enumerate() {
         let (center, radius) = truth[i % records.len()];
         let to_center = center - beam.base;
@@ -358,11 +388,12 @@ pub(crate) fn spheres(
         let disc = (radius - apart.length()) * (radius + apart.length());
         let root = disc.max(0.0).sqrt();
         let t = along - root;
-        if judge(&mut meetings, &answers[3 * i..], disc > 0.0 && t > 0.0, t) {
+        if judge(&mut meetings, &answers[4 * i..], disc > 0.0 && t > 0.0, t) {
             let normal = -(apart + root * beam.dir) / radius;
-            let [x, y, z, error] = answers[3 * i + 2].map(f64::from);
+            let [x, y, z, error] = answers[4 * i + 2].map(f64::from);
             normals.error((DVec3::new(x, y, z) - normal).length(), error);
+            place(&mut points, answers[4 * i + 3], beam.base + t * beam.dir);
         }
     }
-    [meetings, normals]
+    [meetings, normals, points]
 }
