@@ -1,6 +1,7 @@
 //! Bounds at a hit point: indices of tiles and blocks, the colour wheel, the glint's power.
 
 use glam::DVec3;
+use plumb::gpu::bounds::up;
 use plumb::gpu::device::Gpu;
 use plumb::prepare::plane::rows;
 use plumb::real::V3;
@@ -8,7 +9,6 @@ use plumb::scene::{Object, Shape, Surface};
 
 use crate::support::{Rng, Seen, rounded, run};
 use crate::world::{UNIT, VIEWPOINT, World};
-use plumb::gpu::bounds::up;
 
 /// The text is there for the entry point of the test to repeat it: else the test tests nothing.
 fn assert_has(wgsl: &str, lines: &[&str]) {
@@ -25,7 +25,7 @@ fn point(rng: &mut Rng, items: &mut Vec<f32>, number: usize) -> DVec3 {
     let way = rng.unit();
     let truth = near
         + way
-            * if number % 2 == 0 {
+            * if number.is_multiple_of(2) {
                 0.0
             } else {
                 rng.log(-7.0, -2.0)
@@ -43,7 +43,7 @@ const POINT: &str = "
 ";
 
 /// Objects whose surface is modulated, by the number of their record.
-fn modulated<'a>(world: &'a World, code: u32) -> Vec<&'a Object> {
+fn modulated(world: &World, code: u32) -> Vec<&Object> {
     let objects = &world.packed.lit.as_ref().unwrap().objects;
     let mut found: Vec<(u32, &Object)> = objects
         .iter()

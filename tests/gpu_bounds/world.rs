@@ -195,7 +195,8 @@ fn toward_plane(rng: &mut Rng, plane: &TruePlane, beams: Beams) -> TrueBeam {
     let target = plane.point
         + match plane.sides {
             None => {
-                let way = rng.within(rng.0 as f64 % 3.0 + 0.1);
+                let size = rng.log(-1.0, 1.0);
+                let way = rng.within(size);
                 way - plane.normal * plane.normal.dot(way)
             }
             Some((rows, lengths)) => {
