@@ -139,7 +139,7 @@ fn sphere_passage(center: vec3f, radius: f32, size: f32, beam: Beam) -> Passage 
     passage.apart = dot(passage.perpendicular, passage.perpendicular);
 //#if certified
     let far = abs(passage.along) + radius;
-    passage.off = 1.01 * beam.base_error + U * size + far * (2.05 * beam.dir_error + PERPENDICULAR_ROUNDINGS * U);
+    passage.off = 1.01 * beam.base_error + U * size + far * ((2.05 + 2.0 * beam.dir_error) * beam.dir_error + PERPENDICULAR_ROUNDINGS * U);
 //#end
     return passage;
 }

@@ -61,8 +61,23 @@ fn rays_from_anywhere() {
     let spheres = |beams, names| world::spheres(&gpu, &world, wgsl, beams, MANY, names);
     sure.extend(spheres(Beams::Exact, exact));
     wide.extend(spheres(Beams::Off, off));
+    let wild = [
+        "plane_hits_from, ray far off",
+        "locate_met on planes, ray far off",
+    ];
+    let mut far = Vec::from(planes(Beams::Wild, wild));
+    let wild = [
+        "sphere_hits_from, ray far off",
+        "sphere_met, ray far off",
+        "locate_met on spheres, ray far off",
+    ];
+    far.extend(spheres(Beams::Wild, wild));
     for seen in sure {
         seen.judge(DECIDED, TIGHT);
+    }
+    // Little is decided of them, and some of that at the very edge.
+    for seen in far {
+        seen.judge(1_000, TIGHT);
     }
     for seen in wide {
         seen.judge(DECIDED, TIGHT_OFF);

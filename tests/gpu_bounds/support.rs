@@ -95,14 +95,18 @@ impl TrueBeam {
         }
     }
 
-    /// One of the ways in which beams are off; `turn` chooses it.
-    pub(crate) fn off(rng: &mut Rng, base: DVec3, dir: DVec3, hint: DVec3) -> Self {
+    /// One of the ways in which beams are off: a little, or (`wild`) as far as a ray to a light may be.
+    pub(crate) fn off(rng: &mut Rng, base: DVec3, dir: DVec3, hint: DVec3, wild: bool) -> Self {
         let [b, d] = [0; 2].map(|_| {
             let way = [rng.unit(), hint * rng.sign(), dir * rng.sign()];
             way[rng.below(3)]
         });
-        let errors = [rng.log(-7.0, -2.0), rng.log(-7.0, -2.5)];
-        let slack = if rng.chance(0.5) {
+        let errors = if wild {
+            [rng.log(-7.0, 0.0), rng.log(-2.0, -0.46)]
+        } else {
+            [rng.log(-7.0, -2.0), rng.log(-7.0, -2.5)]
+        };
+        let slack = if wild || rng.chance(0.5) {
             1.0
         } else {
             rng.uniform(1.0, 3.0)

@@ -176,17 +176,18 @@ fn true_plane(shape: &Shape) -> TruePlane {
     }
 }
 
-/// Beams in which a ray is off by as much as it may be; or known to be where it is.
+/// Rays that are known to be where they are; that are off by as much as they may be; by up to a third of a radian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Beams {
     Exact,
     Off,
+    Wild,
 }
 
 fn beam(rng: &mut Rng, beams: Beams, base: DVec3, dir: DVec3, hint: DVec3) -> TrueBeam {
     match beams {
         Beams::Exact => TrueBeam::exact(base, dir),
-        Beams::Off => TrueBeam::off(rng, base, dir, hint),
+        Beams::Off | Beams::Wild => TrueBeam::off(rng, base, dir, hint, beams == Beams::Wild),
     }
 }
 
