@@ -27,8 +27,8 @@ use world::{Beams, World};
 const MANY: usize = 1 << 18;
 /// So many of them must have been decided.
 const DECIDED: usize = 60_000;
-/// The worst ratio must be at least this, for bounds that follow a ray, and for those of a whole picture: measured are 0.09
-/// and more, and 0.04 and more. A bound far too large would do no harm but to speed.
+/// The worst ratio must be at least this, for bounds that follow a ray, and for those of a whole picture: measured are 0.07
+/// and more, and 0.05 and more. A bound far too large would do no harm but to speed.
 const TIGHT: f64 = 1.0 / 25.0;
 const TIGHT_LITERAL: f64 = 1.0 / 40.0;
 /// Where rays, points or places are off by all that they may be, bounds are nearly reached.
