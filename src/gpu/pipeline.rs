@@ -122,11 +122,7 @@ fn upload(
         bytes(&packed.rectangles),
     )?;
     if names.contains("sphere_point") {
-        let pairs = packed.spheres.iter().zip(&packed.sphere_points);
-        let records: Vec<u8> = pairs
-            .flat_map(|(sphere, hit)| [bytes(&[*sphere]), bytes(&[*hit])].concat())
-            .collect();
-        add("sphere_point", 5, "spheres", &records)?;
+        add("sphere_point", 5, "spheres", &packed.sphere_records())?;
     } else {
         add("sphere_buffer", 5, "spheres", bytes(&packed.spheres))?;
     }

@@ -6,7 +6,7 @@ use plumb::prepare;
 use plumb::render::{Settings, Spread};
 use plumb::scene::{Camera, Extent, Scene, Shape, Surface};
 
-use crate::support::{Rng, Seen, job, run};
+use crate::support::{Rng, Seen, run};
 use crate::world::{World, materials, object};
 
 /// A scene without lights, of planes, rectangles and spheres of all sizes, that are too many for the shader's text.
@@ -197,14 +197,9 @@ impl Picture {
     }
 
     /// What the shader makes a point of a hit with.
-    fn point_inputs<'a>(&'a self, job: &'a [u8]) -> Vec<(u32, &'a [u8])> {
+    fn point_inputs<'a>(&'a self, spheres: &'a [u8]) -> Vec<(u32, &'a [u8])> {
         let packed = &self.world.packed;
-        vec![
-            (0, job),
-            (2, bytemuck::cast_slice(&packed.objects)),
-            (5, bytemuck::cast_slice(&packed.spheres)),
-            (6, bytemuck::cast_slice(&packed.sphere_points)),
-        ]
+        vec![(2, bytemuck::cast_slice(&packed.objects)), (5, spheres)]
     }
 
     /// Planes and rectangles, and points on them.
@@ -218,7 +213,7 @@ impl Picture {
             (4, bytemuck::cast_slice(&packed.rectangles)),
         ];
         let calls = [("plane_hits", "planes"), ("rectangle_hits", "rectangles")];
-        let job = job();
+        let spheres = packed.sphere_records();
         for kind in 0..2 {
             let objects = &both[kind];
             let n = objects.len();
@@ -265,7 +260,7 @@ impl Picture {
     {CANDIDATE}",
                 self.begin()
             );
-            let mut inputs = self.point_inputs(&job);
+            let mut inputs = self.point_inputs(&spheres);
             inputs.push(records[kind]);
             let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
             for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
@@ -334,7 +329,7 @@ impl Picture {
         });
         let body = format!(
             "{}
-    let c = sphere_hits(spheres[i % {n}u], ray);
+    let c = sphere_hits(sphere_at(i % {n}u), ray);
     var h: Hit;
     h.inverse = c.inverse;
     h.error = c.error;
@@ -343,12 +338,8 @@ impl Picture {
             self.begin(),
             CANDIDATE
         );
-        let job = job();
-        let inputs = [
-            (0, job.as_slice()),
-            (5, bytemuck::cast_slice(&packed.spheres)),
-            (6, bytemuck::cast_slice(&packed.sphere_points)),
-        ];
+        let spheres = packed.sphere_records();
+        let inputs = [(5, spheres.as_slice())];
         let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
         for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
             let (center, radius) = truth[i % n];

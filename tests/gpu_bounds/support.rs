@@ -161,7 +161,7 @@ pub(crate) fn run(
 @group(0) @binding(100) var<storage, read> items: array<vec4f>;
 @group(0) @binding(101) var<storage, read_write> answers: array<vec4f>;
 @compute @workgroup_size(64) fn test(@builtin(global_invocation_id) id: vec3u) {{
-    let i = id.x;
+    let i = id.x + job.zero;
     if i >= {count}u {{
         return;
     }}
@@ -201,8 +201,10 @@ pub(crate) fn run(
     };
     let answers = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let staging = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let job = job();
     let mut buffers: Vec<(u32, wgpu::Buffer)> = inputs
         .iter()
+        .chain([&(0, job.as_slice())])
         .map(|(binding, bytes)| {
             let usage = if *binding == 0 {
                 wgpu::BufferUsages::UNIFORM
@@ -250,7 +252,7 @@ pub(crate) fn run(
 }
 
 /// What `barrier` asks for.
-pub(crate) fn job() -> Vec<u8> {
+fn job() -> Vec<u8> {
     let job = Job {
         first: [0; 2],
         size: [1; 2],

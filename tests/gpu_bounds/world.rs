@@ -8,7 +8,7 @@ use plumb::gpu::pack::Packed;
 use plumb::render::Settings;
 use plumb::scene::{Camera, Extent, Light, Material, Object, Scene, Shape, Surface};
 
-use crate::support::{Rng, Seen, TrueBeam, job, run};
+use crate::support::{Rng, Seen, TrueBeam, run};
 
 pub(crate) const VIEWPOINT: DVec3 = DVec3::new(3.7, 2.9, 6.3);
 /// Lengths on the GPU are in units of the power of two next below the viewpoint's z.
@@ -266,10 +266,9 @@ fn place(seen: &mut Seen, answer: [f32; 4], truth: DVec3) {
 }
 
 /// What the shader makes a point of a meeting with.
-fn inputs<'a>(world: &'a World, job: &'a [u8]) -> [(u32, &'a [u8]); 4] {
+fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     let lit = world.packed.lit.as_ref().unwrap();
     [
-        (0, job),
         (2, bytemuck::cast_slice(&lit.objects)),
         (14, bytemuck::cast_slice(&lit.planes)),
         (15, bytemuck::cast_slice(&lit.spheres)),
@@ -304,8 +303,7 @@ pub(crate) fn planes(
         "{CALL}let m = plane_hits_from(world_planes[record], beam, range);
     let object = world_planes[record].object;{MEETING}"
     );
-    let job = job();
-    let inputs = inputs(world, &job);
+    let inputs = inputs(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
     let [mut seen, mut points] = names.map(Seen::new);
     for (i, beam) in rays.iter().enumerate() {
@@ -378,8 +376,7 @@ pub(crate) fn spheres(
     let object = world_spheres[record].object;{MEETING}
     answers[4u * i + 2u] = sphere_met(world_spheres[record], beam);"
     );
-    let job = job();
-    let inputs = inputs(world, &job);
+    let inputs = inputs(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
     let [mut meetings, mut normals, mut points] = names.map(Seen::new);
     for (i, beam) in rays.iter().enumerate() {

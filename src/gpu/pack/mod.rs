@@ -345,6 +345,16 @@ impl Packed {
         }
     }
 
+    /// The records `SphereAndHit` of `shaders/sphere.wgsl`, for shaders that look at hits.
+    pub fn sphere_records(&self) -> Vec<u8> {
+        let pairs = self.spheres.iter().zip(&self.sphere_points);
+        pairs
+            .flat_map(|(sphere, hit)| {
+                [bytemuck::bytes_of(sphere), bytemuck::bytes_of(hit)].concat()
+            })
+            .collect()
+    }
+
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
         match &self.lit {
