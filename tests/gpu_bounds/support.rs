@@ -294,7 +294,7 @@ impl Seen {
 
     /// What was claimed (for sure, and not impossible) against what is so.
     pub(crate) fn decision(&mut self, sure: bool, possible: bool, truth: bool) {
-        self.wrong += usize::from((sure && !truth) || (!possible && truth) || (sure && !possible));
+        self.wrong += usize::from(if truth { !possible } else { sure } || (sure && !possible));
         self.open += usize::from(possible && !sure);
     }
 
