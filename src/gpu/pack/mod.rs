@@ -243,7 +243,7 @@ impl Packed {
     fn doubtful_numbers(&self) -> Option<&'static str> {
         let fine = |numbers: &[f32]| numbers.iter().all(|n| fits(*n));
         let camera = &self.camera;
-        let far = f64::from(camera.spread) <= 4.0
+        let far = f64::from(camera.spread) <= 64.0
             && fine(&camera.offset)
             && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
             && fine(&[camera.gain, 1.0 / camera.gain])
