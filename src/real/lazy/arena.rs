@@ -71,6 +71,8 @@ pub(super) struct Arena {
     /// The number of the tower.
     pub(super) towers: u32,
     pub(super) effort: Effort,
+    /// Exact numbers made since the effort was last asked for.
+    pub(super) exact_made: usize,
 }
 
 /// More nodes than this, 200 MB of them, are not made.

@@ -22,6 +22,8 @@ const MOST_ROOTS: usize = 6;
 const LARGEST: usize = 1 << 20;
 /// Expressions larger than this, or with more roots, are not tried exactly at once.
 const SMALL: usize = 400;
+/// So many exact numbers are made for a pixel: about a second. Then bits alone decide, and ties are presumed.
+const MOST_EXACT: usize = 100_000;
 const SMALL_ROOTS: usize = 6;
 
 /// The operands of a node, the first and the second.
@@ -324,7 +326,11 @@ impl Arena {
                     waiting.push(i);
                     continue;
                 }
-                None => self.evaluate(i, most)?,
+                None if self.exact_made > MOST_EXACT => return Err(TooHard::Size),
+                None => {
+                    self.exact_made += 1;
+                    self.evaluate(i, most)?
+                }
             };
             let known = self.nodes[i as usize].known.get_or_insert_default();
             known.exact = Some((self.towers, value));

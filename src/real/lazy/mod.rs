@@ -33,7 +33,10 @@ pub struct Lazy(u32);
 impl Lazy {
     /// The hardest that this thread had to do since it last asked.
     pub fn effort() -> Effort {
-        with(|arena| std::mem::take(&mut arena.effort))
+        with(|arena| {
+            arena.exact_made = 0;
+            std::mem::take(&mut arena.effort)
+        })
     }
 
     /// Forgets all numbers of this thread.
