@@ -109,6 +109,11 @@ impl<'a> Stages<'a> {
         }
     }
 
+    /// The scene in f64 with error bounds.
+    pub fn bounded(&self) -> &Prepared<Bounded> {
+        &self.bounded
+    }
+
     /// Whether the values have to be the f32 nearest to the exact ones, as the bytes always are exact.
     pub fn with_values(mut self, wanted: bool) -> Self {
         self.values = wanted;

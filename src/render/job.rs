@@ -41,7 +41,9 @@ impl Job<'_> {
         report: &mut Report,
     ) -> Result<(), Error> {
         let start = Instant::now();
-        let packed = Packed::new(self.scene, self.settings);
+        // Prepared once, for the GPU and for the pixels that the CPU decides.
+        let stages = self.on_threads(|| self.tracer.stages());
+        let packed = Packed::prepared(stages.bounded(), self.scene, self.settings);
         let (found, allowed) = (packed.loop_iterations(), compose::LOOP_ITERATIONS);
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
@@ -103,10 +105,6 @@ impl Job<'_> {
             let finisher = thread::Builder::new()
                 .name("finish".into())
                 .spawn_scoped(scope, || {
-                    if self.settings.precision == Precision::Certified {
-                        // There will be pixels for it; preparing takes a while, and the GPU is busy.
-                        self.tracer.stages();
-                    }
                     // Dropping the receiver is what tells the other side to stop.
                     receiver
                         .into_iter()

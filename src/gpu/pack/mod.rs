@@ -102,6 +102,12 @@ impl Packed {
     /// Prepares a scene and rounds it to f32.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
         let view = View::new(settings.screen_tolerance, settings.samples);
+        Self::prepared(&Prepared::new(scene, view), scene, settings)
+    }
+
+    /// Rounds a scene to f32 that has been prepared as the settings say.
+    pub fn prepared(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Self {
+        let tolerance = settings.screen_tolerance;
         let lattice = match (settings.samples, settings.jitter) {
             (0 | 1, _) => 1.0,
             (_, Spread::Hash) => 1.0 / 1024.0,
@@ -109,23 +115,10 @@ impl Packed {
         };
         let screen = Screen {
             pixels: scene.camera.pixeldim,
-            margin: view.margin,
+            margin: View::new(tolerance, settings.samples).margin,
             lattice,
         };
-        Self::prepared(
-            &Prepared::new(scene, view),
-            scene,
-            &screen,
-            settings.screen_tolerance,
-        )
-    }
-
-    fn prepared(
-        prepared: &Prepared<Bounded>,
-        scene: &Scene,
-        screen: &Screen,
-        tolerance: f64,
-    ) -> Self {
+        let screen = &screen;
         let world_tree = prepared.world.as_ref().and_then(|world| world.bvh.as_ref());
         let tree = if prepared.world.is_some() {
             world_tree
