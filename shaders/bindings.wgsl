@@ -34,6 +34,11 @@ struct Job {
 @group(0) @binding(5) var<storage, read> spheres: array<Sphere>;
 //#end
 //#end
+//#if tiles
+// Where the list of each tile of the screen starts here, by rows from the bottom left, and where the last one ends; then the
+// lists: indices into `spheres`, the nearest first.
+@group(0) @binding(6) var<storage, read> tiles: array<u32>;
+//#end
 //#if bvh
 @group(0) @binding(7) var<storage, read> bvh: array<BvhNode>;
 //#end

@@ -12,19 +12,15 @@ struct BvhNode {
 
 // Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir by
 // components. The roundings of the test are relative, a few ulp; the slack covers them.
-//#if widened
 fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
     let base = (*walk).base;
     let inverse = (*walk).inverse;
-    let a = (bvh[index].min - (*walk).pad - base) * inverse;
-    let b = (bvh[index].max + (*walk).pad - base) * inverse;
-//#else
-fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
-    let base = (*walk).base;
-    let inverse = (*walk).inverse;
-    let a = (bvh[index].min - base) * inverse;
-    let b = (bvh[index].max - base) * inverse;
-//#end
+    var min_from_base = bvh[index].min - base;
+    var max_from_base = bvh[index].max - base;
+    min_from_base -= (*walk).pad; //~
+    max_from_base += (*walk).pad; //~
+    let a = min_from_base * inverse;
+    let b = max_from_base * inverse;
     let low = min(a, b);
     let high = max(a, b);
     let near = max(max(low.x, low.y), max(low.z, 0.0));
@@ -36,10 +32,8 @@ fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
 struct Walk {
     base: vec3f,
     inverse: vec3f,
-//#if widened
     // What the boxes are widened by for a ray that is not known exactly.
-    pad: f32,
-//#end
+    pad: f32, //~
     waiting: u32,
     index: u32,
     stack: array<u32, BVH_DEPTH>,
@@ -54,7 +48,7 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
     return walk;
 }
 
-//#if world_widened
+//#if certified
 
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, beam: Beam) {

@@ -22,7 +22,8 @@ struct Sphere {
     along_error: f32,
     anchor: vec2i,
     disc_error: f32,
-    unused: u32,
+    // 1/s is no larger; where spheres are many.
+    most: f32,
 }
 
 // The sphere as a primary ray meets it; a tangent ray misses.

@@ -40,7 +40,7 @@ struct Hit {
     group: u32,
 //#end
 //#end
-//#if bvh
+//#if tiles
     // Whether every object was asked.
     decided: bool,
 //#end
@@ -95,51 +95,34 @@ fn find_closest_object(ray: Ray) -> Hit {
     }
 //#end
 //#if sphere_loop
-    for (var i = SPHERE_TREE; i < SPHERES; i += 1u) {
+    for (var i = 0u; i < SPHERES; i += 1u) {
         let sphere = sphere_at(i);
         nearer(&closest, sphere_hits(sphere, ray), sphere.object, i, 0u);
     }
 //#end
-//#if sphere_tree
-    var walk = bvh_begin(vec3f(0.0), ray.w);
-    walk.pad = 2.0 * W_ERROR * BVH_SIZE; //~
-    loop {
-        let node = bvh[walk.index];
-        steps += LANES * (2u + node.count);
-        if steps > STEPS_LIMIT {
-            break;
-        }
-        for (var i = node.first; i < node.first + node.count; i += 1u) {
-            let sphere = sphere_at(i);
-        nearer(&closest, sphere_hits(sphere, ray), sphere.object, i, 0u);
-        }
-        // What is truly nearer than the closest is entered before it.
+//#if tiles
+    // Those that may be seen in this tile of the screen, the nearest first: once one is hit, those farther off do not count.
+    let tile = u32(ray.pixel.y) / TILE_HEIGHT * TILE_COLUMNS + u32(ray.pixel.x) / TILE_WIDTH;
+    let first = tiles[tile];
+    let end = tiles[tile + 1u];
+    let last = min(end, first + (STEPS_LIMIT - min(steps, STEPS_LIMIT)) / LANES);
+    closest.decided = last == end;
+    var place = first;
+    for (; place < last; place += 1u) {
+        let index = tiles[place];
+        let sphere = sphere_at(index);
 //#if certified
         let least = closest.inverse - closest.error;
 //#else
         let least = closest.inverse;
 //#end
-        if !bvh_next(&walk, 1.000002 / max(least, 1e-30)) {
+        if sphere.most < least {
             closest.decided = true;
             break;
         }
+        nearer(&closest, sphere_hits(sphere, ray), sphere.object, index, 0u);
     }
-//#end
-//#if world_bvh
-    // In a lit scene one tree serves all rays.
-    let beam = primary_beam(ray);
-//#if certified
-    let met = closest_from(beam, Range(NOTHING, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
-    let length = ray.w2 * ray.inverse_length;
-    let own = length / met.t;
-    nearer(&closest, Candidate(own, met.object != NOTHING, own * (1.01 * met.error / met.t + LENGTH_ERROR), met.object != NOTHING), met.object, 0u, 0u);
-    // Whatever else the ray may meet.
-    closest.rival = max(closest.rival, select(length / max(met.rival, 1e-30) * (1.0 + LENGTH_ERROR), 0.0, met.rival >= T_MAX));
-//#else
-    let met = closest_from(beam, Range(NOTHING, 0u, 0.0, T_MAX), 1u);
-    nearer(&closest, Candidate(1.0 / (ray.inverse_length * met.t), met.object != NOTHING), met.object, 0u, 0u);
-//#end
-    closest.decided = steps <= STEPS_LIMIT;
+    steps += LANES * (place - first + 1u);
 //#end
     return closest;
 }
@@ -316,7 +299,7 @@ fn ray_trace(ray: Ray) -> Traced {
     }
 //#end
     let hit = find_closest_object(ray);
-//#if bvh
+//#if tiles
     if !hit.decided {
         traced.verdict = UNDECIDED;
         return traced;

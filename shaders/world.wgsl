@@ -126,7 +126,7 @@ fn closest_from(beam: Beam, range: Range, weight: u32) -> Met {
         met_nearer(&closest, sphere_hits_from(world_spheres[i], beam, range), world_spheres[i].object, world_spheres[i].group, range);
     }
 //#end
-//#if world_bvh
+//#if bvh
     var walk = bvh_begin(beam.base, beam.dir);
     bvh_widen(&walk, beam); //~
     loop {
@@ -181,7 +181,7 @@ fn anything_from(beam: Beam, range: Range) -> u32 {
         found = max(found, stands_before(sphere_hits_from(world_spheres[i], beam, range), range));
     }
 //#end
-//#if world_bvh
+//#if bvh
     if found == 2u {
         return found;
     }

@@ -339,7 +339,8 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
         "stack",
         "any_hit",
         "world_loop",
-        "world_bvh",
+        "bvh",
+        "tiles",
         "course",
         "sphere_point",
         "sphere_beyond",
@@ -412,7 +413,8 @@ fn what_is_not_used_is_not_there() {
         ("rival", &|i| {
             !matches!(i, Values | Fast) && !objects(i).is_empty()
         }),
-        ("bvh", &|i| i == ManySpheres),
+        ("tiles[", &|i| i == ManySpheres),
+        ("bvh", &|_| false),
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
         ("Pplane", &|i| matches!(i, Pplane(_))),
         ("Texplane", &|i| matches!(i, Texplane(_))),
@@ -572,7 +574,7 @@ mod layout {
             along_error,
             anchor,
             disc_error,
-            unused
+            most
         );
         same_layout!(
             dark,

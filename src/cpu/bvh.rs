@@ -10,13 +10,6 @@ pub fn at_most<R: Real>(number: R) -> f64 {
     if most.is_nan() { f64::INFINITY } else { most }
 }
 
-/// The greatest f64 that the inverse of a number > 0 may be.
-pub fn inverse_at_most<R: Real>(number: R) -> f64 {
-    let Bounded { value, error } = number.near();
-    let most = SLACK / (value - error * SLACK);
-    if most > 0.0 { most } else { f64::INFINITY }
-}
-
 /// Calls `test` with the index of each sphere of the tree that the ray from `base` along `dir` may hit, near boxes first,
 /// as long as they are entered no farther than at `reach`. `test` returns the new reach, in units of `dir`.
 ///

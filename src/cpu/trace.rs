@@ -1,6 +1,5 @@
 //! Twin of `shaders/trace.wgsl`: the closest hit of a primary ray, and the colour that a ray brings.
 
-use super::bvh::{bvh_hits, inverse_at_most};
 use super::camera::{Ray, camera_getdir, inverse_distance};
 use super::light::{Lit, light_term, normal_at};
 use super::plane::{on_plane, plane_hits};
@@ -58,8 +57,7 @@ pub fn find_closest_object<R: Real>(
             R::release(mark);
         }
     }
-    let tree = scene.bvh.is_some();
-    let mut sphere = |index: usize| -> Result<f64, Undecided> {
+    let sphere = |closest: &mut Option<Hit<R>>, index: usize| -> Result<(), Undecided> {
         let mark = R::mark();
         let made;
         let sphere = match scene.spheres.get(index) {
@@ -77,29 +75,35 @@ pub fn find_closest_object<R: Real>(
             object: sphere.object,
             index,
         });
-        if !takes(&mut closest, hit)? {
+        if !takes(closest, hit)? {
             R::release(mark);
         }
-        Ok(match &closest {
-            Some(hit) if tree => inverse_at_most(hit.inverse),
-            _ => f64::INFINITY,
-        })
+        Ok(())
     };
-    let mut treated = 0;
-    if let Some(bvh) = &scene.bvh {
-        bvh_hits(
-            bvh,
-            V3::new(R::zero(), R::zero(), R::zero()),
-            ray.w,
-            f64::INFINITY,
-            &mut sphere,
-        )?;
-        treated = bvh.len;
-    }
-    for index in treated..scene.sphere_count() {
-        sphere(index)?;
+    let Some(tiles) = &scene.tiles else {
+        for index in 0..scene.sphere_count() {
+            sphere(&mut closest, index)?;
+        }
+        return Ok(closest);
+    };
+    for &index in tiles.at(ray.pixel) {
+        let index = index as usize;
+        // The nearest come first: the others lie behind what is hit.
+        if closest
+            .as_ref()
+            .is_some_and(|hit| f64::from(tiles.most[index]) < at_least(hit.inverse))
+        {
+            break;
+        }
+        sphere(&mut closest, index)?;
     }
     Ok(closest)
+}
+
+/// The least f64 that a number may be.
+fn at_least<R: Real>(number: R) -> f64 {
+    let Bounded { value, error } = number.near();
+    value - (error + value.abs() * f64::EPSILON) * Bounded::GROW
 }
 
 /// Takes `hit`, if there is one, where it is nearer than `closest`, or as near and first in the file. Whether it did.

@@ -70,7 +70,7 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
         ),
         (PLANE, features.planes || features.rectangles || lit),
         (SPHERE, features.spheres || names.contains("lit_sphere")),
-        (BVH, features.bvh),
+        (BVH, names.contains("bvh")),
         (SURFACE, features.any_object()),
         (WORLD, lit),
         (LIGHT, lit),
@@ -125,7 +125,11 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     count("plane_loop", "PLANES", packed.planes.len());
     count("rectangle_loop", "RECTANGLES", packed.rectangles.len());
     count("sphere_loop", "SPHERES", packed.spheres.len());
-    count("sphere_loop", "SPHERE_TREE", packed.in_tree);
+    if let Some(tiles) = &packed.tiles {
+        count("tiles", "TILE_WIDTH", tiles.sides[0] as usize);
+        count("tiles", "TILE_HEIGHT", tiles.sides[1] as usize);
+        count("tiles", "TILE_COLUMNS", tiles.count[0] as usize);
+    }
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
     // The last round of each of up to four loops only finds its end.
@@ -202,7 +206,9 @@ fn error_constants(packed: &Packed, names: &BTreeSet<&str>) -> Vec<String> {
     lines.push(format!("const DARK = {};", literal(packed.dark)));
     let most = (0.9 / f64::from(packed.dark)).min(f64::from(f32::MAX));
     lines.push(line("BRIGHT", most));
-    lines.push(line("BVH_SIZE", f64::from(packed.tree_size)));
+    if names.contains("bvh") {
+        lines.push(line("BVH_SIZE", f64::from(packed.tree_size)));
+    }
     lines
 }
 
@@ -210,7 +216,7 @@ fn error_constants(packed: &Packed, names: &BTreeSet<&str>) -> Vec<String> {
 /// counts for all invocations that are lanes of one vector, as long as any of them goes round.
 const LOOP_LIMIT: usize = 65_535;
 
-/// Most iterations of the loops outside the tree, for one primary ray. The shader counts those of the others.
+/// Most iterations of the loops outside the tiles, for one primary ray. The shader counts those of the others.
 pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
 
 /// The procedural shaders used, and those that they call.

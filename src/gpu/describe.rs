@@ -64,6 +64,7 @@ pub fn buffers(scene: &Scene, settings: &Settings) -> String {
     list(&mut text, "tiled_planes", &packed.tiled_planes);
     list(&mut text, "pplanes", &packed.pplanes);
     list(&mut text, "rectangles", &packed.rectangles);
+    list(&mut text, "tile lists", &packed.tile_lists());
     list(&mut text, "bvh", &packed.bvh);
     list(&mut text, "texplanes", &packed.texplanes);
     if let Some(lit) = &packed.lit {

@@ -15,15 +15,15 @@ pub struct FeatureSet {
     pub rectangles: bool,
     /// Some plane crosses the screen, so that the z > τ rule decides pixels.
     pub front: bool,
-    /// There are spheres that primary rays can hit, other than through the tree of a lit scene.
+    /// There are spheres that primary rays can hit.
     pub spheres: bool,
-    /// Some of them are outside the tree.
-    pub loose_spheres: bool,
+    /// They are many, in tiles of the screen.
+    pub tiles: bool,
     /// Some objects share a surface.
     pub groups: bool,
     /// Pixels come with a verdict.
     pub certified: bool,
-    /// Spheres are many and have a tree.
+    /// Spheres of a lit scene are many and have a tree.
     pub bvh: bool,
     /// Objects stand in the text of the shader, not in buffers.
     pub unrolled: bool,
@@ -76,7 +76,6 @@ impl FeatureSet {
     /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a limit on
     /// loops (see [`Gpu::lanes`](super::device::Gpu::lanes)).
     pub fn new(packed: &Packed, settings: &Settings, lanes: u32) -> Self {
-        let tree = !packed.bvh.is_empty();
         let objects = packed
             .lit
             .as_ref()
@@ -91,12 +90,12 @@ impl FeatureSet {
             rectangles: !packed.rectangles.is_empty(),
             front: fronts.into_iter().any(|front| front != [0.0, 0.0, 1.0]),
             spheres: !packed.spheres.is_empty(),
-            loose_spheres: packed.in_tree < packed.spheres.len(),
+            tiles: packed.tiles.is_some(),
             groups: packed.planes.iter().any(|p| p.group != 0)
                 || packed.rectangles.iter().any(|r| r.group != 0),
             certified: settings.precision == Precision::Certified && !settings.values,
-            bvh: tree,
-            unrolled: !tree && (1..=UNROLLED_OBJECTS).contains(&objects),
+            bvh: !packed.bvh.is_empty(),
+            unrolled: packed.tiles.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
             samples: settings.samples,
@@ -121,7 +120,7 @@ impl FeatureSet {
 
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
-        self.planes || self.rectangles || self.spheres || self.bvh
+        self.planes || self.rectangles || self.spheres
     }
 
     /// Numbers of the `pplane` shaders used.
@@ -159,7 +158,9 @@ impl FeatureSet {
         let is_lit = any && self.lit.is_some();
         let lit = self.lit.filter(|_| any).unwrap_or_default();
         let certified = any && self.certified;
-        let sphere_point = self.spheres && (psphere || is_lit);
+        let bvh = is_lit && self.bvh;
+        // In a lit scene with a tree, hits on spheres are looked at as those of rays from anywhere are.
+        let sphere_point = self.spheres && if is_lit { !bvh } else { psphere };
         let loops = !self.unrolled;
         let kinds_of_shape = [self.planes, self.rectangles, self.spheres];
         [
@@ -171,18 +172,16 @@ impl FeatureSet {
             ("plane_loop", self.planes && loops),
             ("rectangle_loop", self.rectangles && loops),
             ("sphere", self.spheres),
-            ("sphere_tree", self.bvh && !is_lit),
-            ("sphere_loop", self.loose_spheres && loops),
+            ("tiles", self.spheres && self.tiles),
+            ("sphere_loop", self.spheres && loops && !self.tiles),
             ("sphere_buffer", self.spheres && (loops || sphere_point)),
             ("sphere_point", sphere_point),
-            // Spheres hit by rays from elsewhere, or through the tree.
+            // Spheres hit by rays from elsewhere, or as by such.
             (
                 "sphere_beyond",
-                lit.spheres && (lit.mirror || lit.clear || self.bvh),
+                lit.spheres && (lit.mirror || lit.clear || bvh),
             ),
-            ("bvh", self.bvh),
-            ("widened", self.bvh && certified),
-            ("world_widened", self.bvh && is_lit && certified),
+            ("bvh", bvh),
             // Where the error of a hit goes on into positions.
             (
                 "first_order",
@@ -202,7 +201,7 @@ impl FeatureSet {
             // Where objects do not come in the order of the file.
             (
                 "mixed",
-                self.bvh || kinds_of_shape.iter().filter(|shape| **shape).count() > 1,
+                self.tiles || kinds_of_shape.iter().filter(|shape| **shape).count() > 1,
             ),
             (
                 "modulated",
@@ -220,14 +219,14 @@ impl FeatureSet {
             ("values", self.values),
             ("samples", any && self.samples > 1),
             ("course", any && self.course),
-            ("counted", any && (is_lit || self.bvh || self.samples > 1)),
+            ("counted", any && (is_lit || self.tiles || self.samples > 1)),
             ("lit", is_lit),
             ("lit_sphere", lit.spheres),
             ("lit_plane", lit.planes),
             ("world_planes", lit.planes),
             (
                 "world_spheres",
-                lit.spheres && (loops || lit.mirror || lit.clear || self.bvh),
+                lit.spheres && (loops || lit.mirror || lit.clear || bvh),
             ),
             ("mirror", lit.mirror),
             ("clear", lit.clear),
@@ -244,7 +243,6 @@ impl FeatureSet {
             ),
             ("world_plane_loop", is_lit && loops && lit.planes),
             ("world_sphere_loop", is_lit && loops && lit.loose_spheres),
-            ("world_bvh", is_lit && self.bvh),
         ]
         .into_iter()
         .filter_map(|(name, holds)| holds.then_some(name))

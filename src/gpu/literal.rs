@@ -67,7 +67,7 @@ pub(super) fn world_sphere_literal(s: &WorldSphere) -> String {
 
 pub(super) fn sphere_literal(s: &Sphere) -> String {
     format!(
-        "Sphere({}, {}, {}, {}u, {}, {}, vec2i({}, {}), {}, 0u)",
+        "Sphere({}, {}, {}, {}u, {}, {}, vec2i({}, {}), {}, 0f)",
         vector(&s.along),
         literal(s.gain),
         vector(&s.square),

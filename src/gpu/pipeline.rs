@@ -126,6 +126,14 @@ fn upload(
     } else {
         add("sphere_buffer", 5, "spheres", bytes(&packed.spheres))?;
     }
+    if names.contains("tiles") {
+        add(
+            "tiles",
+            6,
+            "lists of spheres by tiles of the screen",
+            bytes(&packed.tile_lists()),
+        )?;
+    }
     add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
     add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
     add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;

@@ -1,16 +1,16 @@
-//! A bounding volume hierarchy over many spheres, for both tracers.
+//! A bounding volume hierarchy over many spheres, for rays from anywhere. For both tracers.
 //!
 //! `obvhs` builds the tree from f32 boxes. A box is padded outward before that, by more than a slab test in f32 can err,
 //! so that the tree only ever says "may be hit": which sphere is hit, and where, is decided by the spheres alone.
 
 use std::time::Duration;
 
-use glam::{DVec3, Vec3A};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
-use super::Sphere;
+use super::world::WorldSphere;
 use crate::real::Real;
 
 /// The tree. The spheres it holds stand in its order: a leaf's are `first..first + count`.
@@ -67,27 +67,9 @@ impl Boundable for Boxed {
     }
 }
 
-/// A sphere's place and size, to f64 accuracy or so: the padding covers a few ulp many times over.
-pub trait Bounds {
-    /// The center from the viewpoint, in units of 2^scale.
-    fn center(&self) -> DVec3;
-    /// The radius, in the same units.
-    fn radius(&self) -> f64;
-}
-
-impl<R: Real> Bounds for Sphere<R> {
-    fn center(&self) -> DVec3 {
-        (self.toward * self.distance).approx()
-    }
-
-    fn radius(&self) -> f64 {
-        self.rho2.approx().sqrt() * self.distance.approx()
-    }
-}
-
 /// The padded box of a sphere, if f32 can hold it.
-fn padded(sphere: &impl Bounds) -> Option<Boxed> {
-    let (center, radius) = (sphere.center(), sphere.radius());
+fn padded<R: Real>(sphere: &WorldSphere<R>) -> Option<Boxed> {
+    let (center, radius) = (sphere.center.approx(), sphere.radius.approx());
     let corner = |side: f64| {
         let at = |c: f64| {
             let bound = c + side * radius;
@@ -99,13 +81,10 @@ fn padded(sphere: &impl Bounds) -> Option<Boxed> {
         .then(|| Boxed(Aabb::new(corner(-1.0), corner(1.0))))
 }
 
-/// Builds the tree over the spheres for which `eligible` holds, and puts those first, in the tree's order; the others
-/// follow in their own. None, and nothing moved, if they are too few.
-pub fn build<S: Bounds>(spheres: &mut Vec<S>, eligible: impl Fn(&S) -> bool) -> Option<Bvh> {
-    let boxes: Vec<Option<Boxed>> = spheres
-        .iter()
-        .map(|s| if eligible(s) { padded(s) } else { None })
-        .collect();
+/// Builds the tree over the spheres that f32 can hold and puts those first, in the tree's order; the others follow in their
+/// own. None, and nothing moved, if they are too few.
+pub fn build<R: Real>(spheres: &mut Vec<WorldSphere<R>>) -> Option<Bvh> {
+    let boxes: Vec<Option<Boxed>> = spheres.iter().map(padded).collect();
     let inside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_some()).collect();
     if inside.len() < WORTHWHILE {
         return None;
@@ -132,7 +111,8 @@ pub fn build<S: Bounds>(spheres: &mut Vec<S>, eligible: impl Fn(&S) -> bool) -> 
         .iter()
         .map(|&i| inside[i as usize])
         .chain(outside);
-    let mut unsorted: Vec<Option<S>> = std::mem::take(spheres).into_iter().map(Some).collect();
+    let mut unsorted: Vec<Option<WorldSphere<R>>> =
+        std::mem::take(spheres).into_iter().map(Some).collect();
     spheres.extend(order.filter_map(|i| unsorted[i].take()));
     let depth = depth(&nodes);
     Some(Bvh {
@@ -178,41 +158,33 @@ mod tests {
     use super::*;
     use crate::real::V3;
 
-    fn sphere(i: usize, x: f64, y: f64, z: f64, r: f64) -> Sphere<f64> {
-        let d = (x * x + y * y + z * z).sqrt();
-        Sphere {
-            object: i,
-            toward: V3::new(x / d, y / d, z / d),
-            distance: d,
-            rho2: r * r / (d * d),
-            kappa2: 1.0 - r * r / (d * d),
-            gain: d / (d * d - r * r),
-            seen: None,
+    fn sphere(object: usize, x: f64, y: f64, z: f64, radius: f64) -> WorldSphere<f64> {
+        WorldSphere {
+            object,
+            center: V3::new(x, y, z),
+            radius,
+            level: vec![],
         }
     }
 
     #[test]
     fn every_sphere_is_in_one_leaf_and_in_its_box() {
+        // Every fifth is too far for f32.
+        let far = |i: usize| if i.is_multiple_of(5) { 1e18 } else { 0.0 };
         let mut spheres: Vec<_> = (0..500)
             .map(|i| {
-                sphere(
-                    i,
-                    (i % 10) as f64,
-                    (i / 10 % 10) as f64,
-                    -5.0 - (i / 100) as f64,
-                    0.3,
-                )
+                let z = -5.0 - (i / 100) as f64;
+                sphere(i, (i % 10) as f64 + far(i), (i / 10 % 10) as f64, z, 0.3)
             })
             .collect();
-        let tree = build(&mut spheres, |s| s.object % 5 != 0).unwrap();
+        let tree = build(&mut spheres).unwrap();
         assert_eq!(tree.len, 400);
-        assert!(spheres[..400].iter().all(|s| s.object % 5 != 0));
+        assert!(spheres[..400].iter().all(|s| !s.object.is_multiple_of(5)));
         let mut seen = vec![0; 400];
         for node in tree.nodes.iter().filter(|n| n.count > 0) {
             for i in node.first..node.first + node.count {
                 seen[i as usize] += 1;
-                let s = &spheres[i as usize];
-                let c = s.toward * s.distance;
+                let c = spheres[i as usize].center;
                 for (axis, at) in [c.x, c.y, c.z].into_iter().enumerate() {
                     assert!(
                         f64::from(node.min[axis]) < at - 0.3
@@ -229,6 +201,6 @@ mod tests {
         let mut spheres: Vec<_> = (0..WORTHWHILE - 1)
             .map(|i| sphere(i, i as f64, 0.0, -5.0, 0.3))
             .collect();
-        assert!(build(&mut spheres, |_| true).is_none());
+        assert!(build(&mut spheres).is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! Spheres that are made ready one by one, when a ray comes near them: for number types whose numbers take memory.
 //!
-//! The tree over the spheres, and all that is no number, is shared with a scene prepared before in another type.
+//! The spheres' tree and tiles, and all that is no number, is shared with a scene prepared before in another type.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ impl Laters {
     pub fn new<R: Real>(scene: &Scene, prepared: &Prepared<R>) -> Self {
         let world = prepared.world.as_ref();
         let world_tree = world.and_then(|world| world.bvh.as_ref());
-        if prepared.bvh.is_none() && world_tree.is_none() {
+        if prepared.tiles.is_none() && world_tree.is_none() {
             return Self::default();
         }
         let shape = |shape: &Shape| match *shape {
@@ -52,7 +52,7 @@ impl Laters {
             order: Arc::new(order),
             levels: Arc::new(levels),
         };
-        let primary = prepared.bvh.as_ref().map(|_| {
+        let primary = prepared.tiles.as_ref().map(|_| {
             let order = prepared.spheres.iter().map(|s| s.object as u32);
             later(order.collect(), HashMap::new())
         });

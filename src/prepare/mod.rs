@@ -16,12 +16,13 @@ pub mod material;
 pub mod plane;
 pub mod sphere;
 pub mod surface;
+pub mod tiles;
 pub mod world;
 
 use std::sync::Arc;
 
-use bvh::Bvh;
 use later::{Later, Laters};
+use tiles::Tiles;
 
 use crate::real::Real;
 use crate::scene::{Scene, Shape, Texels};
@@ -66,10 +67,10 @@ pub struct Prepared<R> {
     pub camera: Camera<R>,
     /// The planes that a primary ray can hit, in file order.
     pub planes: Vec<Plane<R>>,
-    /// The spheres that a primary ray can hit: those of the tree in its order, then the others in file order.
+    /// The spheres that a primary ray can hit, in file order.
     pub spheres: Vec<Sphere<R>>,
-    /// The tree over the spheres seen small, if there are many.
-    pub bvh: Option<Arc<Bvh>>,
+    /// Where on the screen they are, if there are many.
+    pub tiles: Option<Arc<Tiles>>,
     /// What spheres are made from that are not in `spheres`.
     pub later: Option<Later>,
     /// One for each object of the scene: what it looks like.
@@ -93,8 +94,7 @@ impl<R: Real> Prepared<R> {
     pub fn new(scene: &Scene, view: impl Into<View>) -> Self {
         let view = view.into();
         let mut prepared = Self::of(scene, view, true);
-        prepared.bvh =
-            bvh::build(&mut prepared.spheres, |sphere| sphere.seen.is_some()).map(Arc::new);
+        prepared.tiles = Tiles::new(scene, &prepared.camera, &prepared.spheres, view).map(Arc::new);
         let materials = scene.objects.iter().map(|object| object.material);
         let is_plane = scene
             .objects
@@ -123,7 +123,7 @@ impl<R: Real> Prepared<R> {
             World::again(scene, scale, view.screen_tolerance, world, later)
         });
         Self {
-            bvh: before.bvh.clone(),
+            tiles: before.tiles.clone(),
             later: laters.primary.clone(),
             materials: Arc::clone(&before.materials),
             is_plane: Arc::clone(&before.is_plane),
@@ -132,7 +132,7 @@ impl<R: Real> Prepared<R> {
         }
     }
 
-    /// The scene without tree, world and tables; spheres in file order if they are wanted.
+    /// The scene without tiles, world and tables; spheres in file order if they are wanted.
     fn of(scene: &Scene, view: View, with_spheres: bool) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
@@ -176,7 +176,7 @@ impl<R: Real> Prepared<R> {
             camera,
             planes,
             spheres,
-            bvh: None,
+            tiles: None,
             later: None,
             surfaces,
             materials: Arc::default(),

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use dashu_ratio::RBig;
 use glam::DVec3;
 
-use super::bvh::{self, Bounds, Bvh};
+use super::bvh::{self, Bvh};
 use super::exact::{dot, is_zero, power_of_two, ratio, ratio3, two_to};
 use super::later::Later;
 use super::{Light, plane::Extent};
@@ -75,22 +75,12 @@ pub struct WorldSphere<R> {
     pub level: Vec<usize>,
 }
 
-impl<R: Real> Bounds for WorldSphere<R> {
-    fn center(&self) -> DVec3 {
-        self.center.approx()
-    }
-
-    fn radius(&self) -> f64 {
-        self.radius.approx()
-    }
-}
-
 impl<R: Real> World<R> {
     /// Prepares a lit scene.
     pub fn new(scene: &Scene, scale: i32, screen_tolerance: f64) -> Self {
         let groups = Arc::new(groups(scene));
         let mut world = Self::of(scene, scale, screen_tolerance, groups, Arc::default(), true);
-        world.bvh = bvh::build(&mut world.spheres, |_| true).map(Arc::new);
+        world.bvh = bvh::build(&mut world.spheres).map(Arc::new);
         let mut places = vec![0; scene.objects.len()];
         for (place, plane) in world.planes.iter().enumerate() {
             places[plane.object] = place;

@@ -8,9 +8,13 @@ pub use lit::Lit;
 pub use records::*;
 
 use std::collections::HashSet;
+use std::sync::Arc;
+
+use rayon::prelude::*;
 
 use super::bounds::{LARGEST, Screen, U, fits, most, up};
 use crate::prepare::surface::{Pplane, Textured, Tiled};
+use crate::prepare::tiles::Tiles;
 use crate::prepare::{self, Prepared, View, world};
 use crate::real::{Bounded, Real, V3};
 use crate::scene::{Scene, Shape};
@@ -70,14 +74,14 @@ pub struct Packed {
     pub planes: Vec<Plane>,
     /// Rectangles that a primary ray can hit.
     pub rectangles: Vec<Rectangle>,
-    /// The tree over the small spheres, or in a lit scene over all; empty without. They stand in its order.
+    /// The tree over the spheres of a lit scene, for rays from anywhere; empty without.
     pub bvh: Vec<BvhNode>,
     /// Depth of the tree.
     pub bvh_depth: usize,
-    /// Spheres that a primary ray can hit: those of the tree first.
+    /// Spheres that a primary ray can hit.
     pub spheres: Vec<Sphere>,
-    /// How many of them the tree holds.
-    pub in_tree: usize,
+    /// Which of them are seen where on the screen, if they are many.
+    pub tiles: Option<Arc<Tiles>>,
     /// One for each of `spheres`: where it is hit.
     pub sphere_points: Vec<SphereHit>,
     /// Tiled planes.
@@ -119,12 +123,7 @@ impl Packed {
             lattice,
         };
         let screen = &screen;
-        let world_tree = prepared.world.as_ref().and_then(|world| world.bvh.as_ref());
-        let tree = if prepared.world.is_some() {
-            world_tree
-        } else {
-            prepared.bvh.as_ref()
-        };
+        let tree = prepared.world.as_ref().and_then(|world| world.bvh.as_ref());
         let surfaces = Surfaces::new(scene, prepared, tolerance);
         let mut packed = Self {
             camera: camera(&prepared.camera, screen),
@@ -144,7 +143,7 @@ impl Packed {
                 .collect(),
             bvh_depth: tree.map_or(0, |bvh| bvh.depth),
             spheres: Vec::new(),
-            in_tree: 0,
+            tiles: prepared.tiles.clone(),
             sphere_points: Vec::new(),
             tiled_planes: Vec::new(),
             pplanes: Vec::new(),
@@ -155,10 +154,7 @@ impl Packed {
             tree_size: 0.0,
             unprovable: None,
         };
-        // In a lit scene the tree is for all rays alike, and what it does not hold is asked with it.
-        if world_tree.is_none() {
-            packed.pack_primary(prepared, &surfaces, screen);
-        }
+        packed.pack_primary(prepared, &surfaces, screen);
         let mut textures = vec![None; prepared.textures.len()];
         if prepared.world.is_some() {
             // Any ray can hit any object.
@@ -207,13 +203,22 @@ impl Packed {
                 )),
             }
         }
-        // The tree's spheres are all there: its leaves count on it.
-        self.in_tree = scene.bvh.as_ref().map_or(0, |bvh| bvh.len);
-        for (place, sphere) in scene.spheres.iter().enumerate() {
-            if place < self.in_tree || !surfaces.hidden[sphere.object] {
-                let (sphere, point) = primary::sphere(&scene.camera, sphere, screen);
-                self.spheres.push(sphere);
-                self.sphere_points.push(point);
+        // The tiles' spheres are all there: their lists count on it.
+        let spheres: Vec<_> = match &scene.tiles {
+            Some(_) => scene.spheres.iter().collect(),
+            None => scene
+                .spheres
+                .iter()
+                .filter(|s| !surfaces.hidden[s.object])
+                .collect(),
+        };
+        (self.spheres, self.sphere_points) = spheres
+            .par_iter()
+            .map(|sphere| primary::sphere(&scene.camera, sphere, screen))
+            .unzip();
+        if let Some(tiles) = &scene.tiles {
+            for (sphere, most) in self.spheres.iter_mut().zip(&tiles.most) {
+                sphere.most = *most;
             }
         }
     }
@@ -350,26 +355,35 @@ impl Packed {
 
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
-        match &self.lit {
-            Some(lit) if !self.bvh.is_empty() => lit.planes.len() + lit.spheres.len(),
-            _ => self.planes.len() + self.rectangles.len() + self.spheres.len(),
-        }
+        self.planes.len() + self.rectangles.len() + self.spheres.len()
     }
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
     pub fn tests(&self) -> usize {
-        let primary = self.loop_iterations() + 8 * self.bvh_depth;
+        let listed = |tiles: &Arc<Tiles>| tiles.members.len() / (tiles.starts.len() - 1);
+        let primary = self.loop_iterations() + self.tiles.as_ref().map_or(0, listed);
         let Some(lit) = &self.lit else { return primary };
         // A shadow ray a light, a few times over for mirrors.
         primary + 4 * (1 + lit.lights.len()) * (lit.loop_iterations() + 8 * self.bvh_depth + 4)
     }
 
-    /// Iterations of the loops over objects outside the tree, for one primary ray.
+    /// Iterations of the loops over objects outside the tiles, for one primary ray.
     pub fn loop_iterations(&self) -> usize {
-        match &self.lit {
-            Some(lit) if !self.bvh.is_empty() => lit.loop_iterations(),
-            _ => self.planes.len() + self.rectangles.len() + self.spheres.len() - self.in_tree,
-        }
+        let spheres = match &self.tiles {
+            Some(_) => 0,
+            None => self.spheres.len(),
+        };
+        self.planes.len() + self.rectangles.len() + spheres
+    }
+
+    /// Where the list of each tile starts in what this returns, and where the last one ends; then the lists.
+    pub fn tile_lists(&self) -> Vec<u32> {
+        let Some(tiles) = &self.tiles else {
+            return Vec::new();
+        };
+        let starts = tiles.starts.len() as u32;
+        let starts = tiles.starts.iter().map(|start| start + starts);
+        starts.chain(tiles.members.iter().copied()).collect()
     }
 }
 

@@ -233,7 +233,7 @@ pub(super) fn sphere(
         along_error,
         anchor: outline.anchor,
         disc_error,
-        unused: 0,
+        most: 0.0,
     };
     // (H − C)/(r·s) = (W − gain·along·C)/r − gain·C/r·√disc.
     let radius = sphere.rho2.sqrt() * sphere.distance;

@@ -84,8 +84,8 @@ pub struct Sphere {
     pub anchor: [i32; 2],
     /// Bound of the error of the discriminant.
     pub disc_error: f32,
-    /// Nothing.
-    pub unused: u32,
+    /// 1/s is no larger; where spheres are many.
+    pub most: f32,
 }
 
 /// `SphereHit` in `shaders/sphere.wgsl`: (H − C)/(r·s) = forms − center·√disc.

@@ -1,0 +1,250 @@
+//! Which of many spheres a primary ray may hit, by the tile of the screen that it passes through. For both tracers.
+//!
+//! A sphere stands in the list of every tile that its outline's box touches. The lists run from the nearest sphere on, so
+//! that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64 and are padded by
+//! far more than that errs: they only ever say "may be hit".
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{Camera, Sphere, View};
+use crate::real::Real;
+use crate::scene::{Scene, Shape};
+
+/// From so many objects on a ray does not ask every sphere. (Fewer stand in the text of the GPU's shader.)
+pub const WORTHWHILE: usize = 33;
+
+/// Columns and rows of a tile, unless there would be too many tiles: a driver that is a CPU runs 8 pixels of a row as one
+/// vector, and they should share a list.
+const SIDES: [u32; 2] = [8, 4];
+
+/// Most tiles.
+const MOST_TILES: u64 = 1 << 20;
+
+/// Most entries of all lists, beside eight for each sphere.
+const ENTRIES: u64 = 1 << 20;
+
+/// Spheres are seen from outside by a ray that is not parallel to the screen if their depth is more than their radius by
+/// this share; the others are seen anywhere.
+const CLEARANCE: f64 = 1.0 + 1e-5;
+
+/// What an outline's end may be off by, relatively; and in pixels.
+const PAD: f64 = 1e-9;
+const PAD_PIXELS: f64 = 1e-3;
+
+/// The lists.
+#[derive(Debug, Clone)]
+pub struct Tiles {
+    /// Columns and rows of a tile.
+    pub sides: [u32; 2],
+    /// Number of tiles side by side, and one above the other.
+    pub count: [u32; 2],
+    /// The list of tile i, counted by rows from the bottom left, is `members[starts[i]..starts[i + 1]]`.
+    pub starts: Vec<u32>,
+    /// Places of the prepared spheres, in each list the nearest first.
+    pub members: Vec<u32>,
+    /// For each prepared sphere: its hits' 1/s are no larger.
+    pub most: Vec<f32>,
+}
+
+/// The pixels that a sphere may cover: first and last column and row.
+type Covered = Option<[[u32; 2]; 2]>;
+
+impl Tiles {
+    /// The places of the spheres that a ray through this point of the screen may hit, in pixels from the bottom left. The
+    /// nearest come first.
+    pub fn at(&self, pixel: [f64; 2]) -> &[u32] {
+        let [column, row] = [0, 1].map(|i| {
+            let pixel = pixel[i].round().max(0.0) as u32;
+            (pixel / self.sides[i]).min(self.count[i] - 1)
+        });
+        let tile = (row * self.count[0] + column) as usize;
+        &self.members[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+
+    /// Sorts spheres into tiles; None where they are so few that every one may be asked.
+    pub fn new<R: Real>(
+        scene: &Scene,
+        camera: &Camera<R>,
+        spheres: &[Sphere<R>],
+        view: View,
+    ) -> Option<Self> {
+        if spheres.is_empty() || scene.objects.len() < WORTHWHILE {
+            return None;
+        }
+        let ball = |sphere: &Sphere<R>| match scene.objects[sphere.object].shape {
+            Shape::Sphere { center, radius } => (center, radius),
+            Shape::Plane { .. } => unreachable!("a sphere is made from a sphere"),
+        };
+        let outline = Outlines::new(scene, camera, view);
+        let (most, covered): (Vec<f32>, Vec<Covered>) = spheres
+            .par_iter()
+            .map(|sphere| {
+                let (center, radius) = ball(sphere);
+                outline.of(center, radius)
+            })
+            .unzip();
+        let order = nearest_first(&most, |place| ball(&spheres[place]));
+        let mut sides = SIDES;
+        while !few_enough(scene.camera.pixeldim, sides, &covered) {
+            sides = sides.map(|side| 2 * side);
+        }
+        let count = counts(scene.camera.pixeldim, sides);
+        let tiles = count[0] as usize * count[1] as usize;
+        let mut starts = vec![0_u32; tiles + 2];
+        let each = |place: usize, then: &mut dyn FnMut(usize)| {
+            let Some([x, y]) = covered[place] else { return };
+            for row in y[0] / sides[1]..=y[1] / sides[1] {
+                for column in x[0] / sides[0]..=x[1] / sides[0] {
+                    then(row as usize * count[0] as usize + column as usize);
+                }
+            }
+        };
+        for &place in &order {
+            each(place as usize, &mut |tile| starts[tile + 2] += 1);
+        }
+        let mut total = 0;
+        for start in &mut starts {
+            total += *start;
+            *start = total;
+        }
+        // Now starts[i + 1] is where tile i's list goes on; filled, it is where it ends.
+        let mut members = vec![0; total as usize];
+        for &place in &order {
+            each(place as usize, &mut |tile| {
+                members[starts[tile + 1] as usize] = place;
+                starts[tile + 1] += 1;
+            });
+        }
+        starts.pop();
+        Some(Self {
+            sides,
+            count,
+            starts,
+            members,
+            most,
+        })
+    }
+}
+
+fn counts(pixels: [u32; 2], sides: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|i| pixels[i].div_ceil(sides[i]))
+}
+
+/// Whether tiles of this size are not too many, nor their lists too long.
+fn few_enough(pixels: [u32; 2], sides: [u32; 2], covered: &[Covered]) -> bool {
+    let count = counts(pixels, sides).map(u64::from);
+    if count == [1, 1] {
+        return true;
+    }
+    let entries = |covered: &[[u32; 2]; 2]| {
+        let [columns, rows] = [0, 1].map(|i| {
+            let [first, last] = covered[i];
+            u64::from(last / sides[i] - first / sides[i] + 1)
+        });
+        columns * rows
+    };
+    let total: u64 = covered.par_iter().flatten().map(entries).sum();
+    count[0] * count[1] <= MOST_TILES && total <= ENTRIES + 8 * covered.len() as u64
+}
+
+/// The places of the spheres, nearest first. Of equal spheres only the first in the file is there: it is the one that counts.
+fn nearest_first(most: &[f32], ball: impl Fn(usize) -> (DVec3, f64)) -> Vec<u32> {
+    // Positive floats are ordered as their bits.
+    let key = |(place, most): (usize, &f32)| u64::from(!most.to_bits()) << 32 | place as u64;
+    let mut keys: Vec<u64> = most.par_iter().enumerate().map(key).collect();
+    keys.par_sort_unstable();
+    let mut order = Vec::with_capacity(keys.len());
+    for alike in keys.chunk_by(|a, b| a >> 32 == b >> 32) {
+        let places = alike.iter().map(|key| *key as u32);
+        if alike.len() == 1 {
+            order.extend(places);
+            continue;
+        }
+        let mut seen = HashSet::new();
+        order.extend(places.filter(|place| {
+            let (center, radius) = ball(*place as usize);
+            // Adding 0 makes −0 and 0 the same.
+            let [x, y, z] = center.to_array().map(|c| c + 0.0);
+            seen.insert([x, y, z, radius].map(f64::to_bits))
+        }));
+    }
+    order
+}
+
+/// Where spheres are seen.
+struct Outlines {
+    viewpoint: DVec3,
+    unit: f64,
+    distance: f64,
+    step: [f64; 2],
+    offset: [f64; 2],
+    anchor: [f64; 2],
+    pixels: [u32; 2],
+    margin: f64,
+}
+
+impl Outlines {
+    fn new<R: Real>(scene: &Scene, camera: &Camera<R>, view: View) -> Self {
+        Self {
+            viewpoint: scene.camera.viewpoint,
+            unit: super::exact::two_to(-camera.scale),
+            distance: camera.distance.approx(),
+            step: camera.step.map(R::approx),
+            offset: camera.offset.map(R::approx),
+            anchor: camera.anchor.map(f64::from),
+            pixels: scene.camera.pixeldim,
+            margin: view.margin,
+        }
+    }
+
+    /// The largest 1/s of the sphere's hits, and the pixels that it may cover.
+    fn of(&self, center: DVec3, radius: f64) -> (f32, Covered) {
+        let c = (center - self.viewpoint) * self.unit;
+        let r = radius * self.unit;
+        let (depth, d) = (-c.z, self.distance);
+        let everywhere = self.pixels.map(|n| [0, n - 1]);
+        // A NaN is no more than anything; and squares of such numbers stay in range.
+        let outside = depth > r * CLEARANCE && depth > 1e-100 && depth < 1e100;
+        if !outside {
+            return (f32::MAX, Some(everywhere));
+        }
+        // H.z = −d·s is at most that of the sphere's nearest point.
+        let nearest = (d / (depth - r) * (1.0 + 1e-6)).min(f64::from(f32::MAX) * 0.9);
+        let most = (nearest as f32).next_up();
+        // The planes through the viewpoint and a column's or row's rays touch the sphere at W_i = d·(c·z ± r·√(c² + z² − r²))/
+        // (z² − r²), z the depth: docs/NUMERICS.md.
+        let square = (depth - r) * (depth + r);
+        let mut covered = everywhere;
+        for i in 0..2 {
+            let side = if i == 0 { c.x } else { c.y };
+            let root = r * (side * side + square).sqrt();
+            let middle = side * depth;
+            let pad = PAD * (middle.abs() + root);
+            let pixel = |w: f64, sign: f64| {
+                let w = d * (w + sign * pad) / square;
+                let pad = 1e-13 * (w.abs() + self.offset[i].abs());
+                let at = self.anchor[i] + (w - self.offset[i] + sign * pad) / self.step[i];
+                at + sign * (self.margin + PAD_PIXELS)
+            };
+            let (low, high) = (
+                pixel(middle - root, -1.0).ceil(),
+                pixel(middle + root, 1.0).floor(),
+            );
+            let last = f64::from(self.pixels[i] - 1);
+            if !(self.step[i] > 0.0 && low.is_finite() && high.is_finite()) {
+                continue;
+            }
+            if low > last || high < 0.0 || low > high {
+                return (most, None);
+            }
+            covered[i] = [low.max(0.0) as u32, high.min(last) as u32];
+        }
+        (most, Some(covered))
+    }
+}
+
+#[cfg(test)]
+mod tests;
