@@ -22,10 +22,11 @@ pub mod world;
 use std::sync::Arc;
 
 use later::{Later, Laters};
+use rayon::prelude::*;
 use tiles::Tiles;
 
 use crate::real::Real;
-use crate::scene::{Scene, Shape, Texels};
+use crate::scene::{Object, Scene, Shape, Texels};
 
 pub use camera::Camera;
 pub use material::{Light, Material};
@@ -136,32 +137,40 @@ impl<R: Real> Prepared<R> {
     fn of(scene: &Scene, view: View, with_spheres: bool) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
-        let mut spheres = Vec::new();
         let mut surfaces = Vec::with_capacity(scene.objects.len());
         for (index, object) in scene.objects.iter().enumerate() {
-            match object.shape {
-                Shape::Plane {
+            if let Shape::Plane {
+                normal,
+                point,
+                extent,
+            } = object.shape
+            {
+                planes.extend(Plane::new(
+                    &scene.camera,
+                    view,
+                    index,
                     normal,
                     point,
-                    extent,
-                } => {
-                    planes.extend(Plane::new(
-                        &scene.camera,
-                        view,
-                        index,
-                        normal,
-                        point,
-                        extent.as_ref(),
-                    ));
-                }
-                Shape::Sphere { center, radius } if with_spheres => {
-                    let viewpoint = scene.camera.viewpoint;
-                    spheres.extend(Sphere::new(viewpoint, &camera, index, center, radius));
-                }
-                Shape::Sphere { .. } => {}
+                    extent.as_ref(),
+                ));
             }
             surfaces.push(Surface::new(scene, object));
         }
+        let sphere = |(index, object): (usize, &Object)| match object.shape {
+            Shape::Sphere { center, radius } => {
+                Sphere::new(scene.camera.viewpoint, &camera, index, center, radius)
+            }
+            Shape::Plane { .. } => None,
+        };
+        let objects = &scene.objects;
+        let spheres = if !with_spheres {
+            Vec::new()
+        } else if objects.len() < tiles::WORTHWHILE {
+            objects.iter().enumerate().filter_map(sphere).collect()
+        } else {
+            // Numbers that belong to a thread are made elsewhere: so many spheres are made later in those.
+            objects.par_iter().enumerate().filter_map(sphere).collect()
+        };
         let any_clear = scene
             .objects
             .iter()

@@ -78,7 +78,7 @@ pub struct WorldSphere<R> {
 impl<R: Real> World<R> {
     /// Prepares a lit scene.
     pub fn new(scene: &Scene, scale: i32, screen_tolerance: f64) -> Self {
-        let groups = Arc::new(groups(scene));
+        let groups = Arc::new(groups(scene, true));
         let mut world = Self::of(scene, scale, screen_tolerance, groups, Arc::default(), true);
         world.bvh = bvh::build(&mut world.spheres).map(Arc::new);
         let mut places = vec![0; scene.objects.len()];
@@ -246,10 +246,14 @@ fn lights_on_sphere(scene: &Scene, center: DVec3, radius: f64) -> Vec<usize> {
         .collect()
 }
 
-/// For each object the number of the surface that it is or is part of: the same for the same set of points.
-pub fn groups(scene: &Scene) -> Vec<u32> {
+/// For each object the number of the surface that it is or is part of: the same for the same set of points. Where equal
+/// spheres need not be told, spheres have none in common.
+pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
     let mut groups = Groups::default();
-    let of = |object: &crate::scene::Object| groups.of(&object.shape);
+    let of = |object: &crate::scene::Object| match object.shape {
+        Shape::Sphere { .. } if !equal_spheres => groups.new(),
+        _ => groups.of(&object.shape),
+    };
     scene.objects.iter().map(of).collect()
 }
 
@@ -263,12 +267,8 @@ struct Groups {
 
 impl Groups {
     fn of(&mut self, shape: &Shape) -> u32 {
-        let count = &mut self.count;
-        let mut new = || {
-            *count += 1;
-            *count - 1
-        };
-        match *shape {
+        let new = self.count;
+        let group = match *shape {
             Shape::Plane { normal, point, .. } => {
                 let n = ratio3(normal);
                 // N·X = N·Q with the first component of N that is not 0 scaled to 1.
@@ -282,15 +282,25 @@ impl Groups {
                 *self
                     .planes
                     .entry([x, y, z, offset.canonicalize()])
-                    .or_insert_with(&mut new)
+                    .or_insert(new)
             }
             Shape::Sphere { center, radius } => {
                 // Adding 0 makes −0 and 0 the same.
                 let key =
                     [center.x + 0.0, center.y + 0.0, center.z + 0.0, radius].map(f64::to_bits);
-                *self.spheres.entry(key).or_insert_with(&mut new)
+                *self.spheres.entry(key).or_insert(new)
             }
+        };
+        if group == new {
+            self.new();
         }
+        group
+    }
+
+    /// The number of a surface that nothing shares.
+    fn new(&mut self) -> u32 {
+        self.count += 1;
+        self.count - 1
     }
 }
 

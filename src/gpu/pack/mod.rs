@@ -7,7 +7,6 @@ mod records;
 pub use lit::Lit;
 pub use records::*;
 
-use std::collections::HashSet;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -82,7 +81,7 @@ pub struct Packed {
     pub spheres: Vec<Sphere>,
     /// Which of them are seen where on the screen, if they are many.
     pub tiles: Option<Arc<Tiles>>,
-    /// One for each of `spheres`: where it is hit.
+    /// One for each of `spheres`, if anybody looks at hits on spheres: where it is hit.
     pub sphere_points: Vec<SphereHit>,
     /// Tiled planes.
     pub tiled_planes: Vec<TiledPlane>,
@@ -212,14 +211,20 @@ impl Packed {
                 .filter(|s| !surfaces.hidden[s.object])
                 .collect(),
         };
-        (self.spheres, self.sphere_points) = spheres
+        let most = |place: usize| scene.tiles.as_ref().map_or(0.0, |tiles| tiles.most[place]);
+        self.spheres = spheres
             .par_iter()
-            .map(|sphere| primary::sphere(&scene.camera, sphere, screen))
-            .unzip();
-        if let Some(tiles) = &scene.tiles {
-            for (sphere, most) in self.spheres.iter_mut().zip(&tiles.most) {
-                sphere.most = *most;
-            }
+            .enumerate()
+            .map(|(place, sphere)| primary::sphere(&scene.camera, sphere, screen, most(place)))
+            .collect();
+        // Plain spheres without light are not looked at where they are hit.
+        let psphere =
+            |surface: &prepare::Surface<Bounded>| matches!(surface, prepare::Surface::Psphere(_));
+        if scene.world.is_some() || scene.surfaces.iter().any(psphere) {
+            self.sphere_points = spheres
+                .par_iter()
+                .map(|sphere| primary::sphere_hit(&scene.camera, sphere, screen))
+                .collect();
         }
     }
 
@@ -402,16 +407,17 @@ impl Surfaces {
     fn new(scene: &Scene, prepared: &Prepared<Bounded>, tolerance: f64) -> Self {
         let groups = match &prepared.world {
             Some(world) => world.groups.to_vec(),
-            None => world::groups(scene),
+            None => world::groups(scene, prepared.tiles.is_none()),
         };
-        let mut covered = HashSet::new();
-        let mut members = vec![0_u32; groups.iter().map(|g| *g as usize + 1).max().unwrap_or(0)];
+        let count = groups.iter().map(|g| *g as usize + 1).max().unwrap_or(0);
+        let mut covered = vec![false; count];
+        let mut members = vec![0_u32; count];
         let mut hidden = Vec::with_capacity(groups.len());
         for (object, group) in scene.objects.iter().zip(&groups) {
             // A plane of constant z before τ is never hit.
             let before = matches!(object.shape, Shape::Plane { normal, point, .. }
                 if normal.x == 0.0 && normal.y == 0.0 && point.z > tolerance);
-            let hides = before || covered.contains(group);
+            let hides = before || covered[*group as usize];
             hidden.push(hides);
             if !hides {
                 members[*group as usize] += 1;
@@ -423,7 +429,7 @@ impl Surfaces {
                     ..
                 }
             ) {
-                covered.insert(*group);
+                covered[*group as usize] = true;
             }
         }
         Self {

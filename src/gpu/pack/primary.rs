@@ -215,16 +215,25 @@ fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Optio
     })
 }
 
-/// The record of a sphere, and that of the hits on it if somebody asks for them.
+fn outline(
+    camera: &Camera<Bounded>,
+    sphere: &prepare::Sphere<Bounded>,
+    screen: &Screen,
+) -> Outline {
+    ellipse(camera, sphere).unwrap_or_else(|| wide(camera, sphere, screen))
+}
+
+/// The record of a sphere; its hits' 1/s are at most `most`.
 pub(super) fn sphere(
     camera: &Camera<Bounded>,
     sphere: &prepare::Sphere<Bounded>,
     screen: &Screen,
-) -> (Sphere, SphereHit) {
-    let outline = ellipse(camera, sphere).unwrap_or_else(|| wide(camera, sphere, screen));
+    most: f32,
+) -> Sphere {
+    let outline = outline(camera, sphere, screen);
     let (disc, disc_error) = quadratic(outline.disc, outline.reach, screen);
     let (along, along_error) = linear(outline.along, outline.reach, screen);
-    let record = Sphere {
+    Sphere {
         along,
         gain: sphere.gain.value as f32,
         square: [disc[0], disc[1], disc[2]],
@@ -233,8 +242,17 @@ pub(super) fn sphere(
         along_error,
         anchor: outline.anchor,
         disc_error,
-        most: 0.0,
-    };
+        most,
+    }
+}
+
+/// The record of the hits on a sphere.
+pub(super) fn sphere_hit(
+    camera: &Camera<Bounded>,
+    sphere: &prepare::Sphere<Bounded>,
+    screen: &Screen,
+) -> SphereHit {
+    let outline = outline(camera, sphere, screen);
     // (H − C)/(r·s) = (W − gain·along·C)/r − gain·C/r·√disc.
     let radius = sphere.rho2.sqrt() * sphere.distance;
     let inverse_radius = number(1.0) / radius;
@@ -249,7 +267,7 @@ pub(super) fn sphere(
     };
     let (x, y, z) = (part(0), part(1), part(2));
     let error = [x.1, y.1, z.1].map(f64::from);
-    let point = SphereHit {
+    SphereHit {
         form_x: x.0,
         inverse_radius: inverse_radius.value as f32,
         form_y: y.0,
@@ -258,6 +276,5 @@ pub(super) fn sphere(
         center_size: up(most(center.dot(center).sqrt())),
         center: super::f32x3(center),
         unused: 0,
-    };
-    (record, point)
+    }
 }
