@@ -24,6 +24,8 @@ pub type Emit<'a> = dyn FnMut(&Band) -> io::Result<()> + Send + 'a;
 pub enum Stage {
     /// The GPU, in f32, and it was sure.
     Gpu,
+    /// The CPU, in f32, likewise.
+    Single,
     /// f64 with error bounds.
     Bounded,
     /// Numbers of 128 bits and more, or exact ones that differ.
@@ -36,8 +38,9 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in order; each stands at its own number.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Gpu,
+        Self::Single,
         Self::Bounded,
         Self::Multiprecision,
         Self::Exact,
@@ -48,6 +51,7 @@ impl Stage {
     pub fn name(self) -> &'static str {
         match self {
             Self::Gpu => "gpu",
+            Self::Single => "f32",
             Self::Bounded => "f64",
             Self::Multiprecision => "multiprecision",
             Self::Exact => "tie",

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::{Decided, Stage, Tally};
+use crate::cpu::lanes::{LANES, Lanes};
 use crate::cpu::pixel::Stages;
 use crate::cpu::trace::Limits;
 use crate::frame::{Band, PixelFault};
@@ -130,8 +131,13 @@ impl<'a> Tracer<'a> {
         Ok((all, tally))
     }
 
-    /// Traces a whole band.
-    pub fn band(&self, rows: Range<u32>, wanted: Wanted) -> Result<(Band, Tally), PixelFault> {
+    /// Traces a whole band; with `lanes`, eight pixels at once as far as those are sure.
+    pub fn band(
+        &self,
+        rows: Range<u32>,
+        wanted: Wanted,
+        lanes: Option<&Lanes>,
+    ) -> Result<(Band, Tally), PixelFault> {
         let stages = self.stages();
         let (width, top) = (self.width, rows.end - 1);
         let pixels = width * rows.len();
@@ -141,6 +147,7 @@ impl<'a> Tracer<'a> {
         // Pieces of rows, small enough to share out, large enough not to cost.
         let piece = (pixels / (8 * rayon::current_num_threads()))
             .clamp(64, 8192)
+            .next_multiple_of(LANES)
             .min(width);
         let value_lines = lines(&mut values, width, rows.len());
         let verdict_lines = lines(&mut verdicts, width, rows.len());
@@ -160,19 +167,43 @@ impl<'a> Tracer<'a> {
                     .enumerate()
                     .map(|(k, ((bytes, values), verdicts))| {
                         let mut tally = Tally::default();
-                        for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                            let x = k * piece + i;
-                            let sampling = self.jitter.pixel(offsets.as_deref(), width, x);
-                            let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
-                            tally.decided(decided.stage, [x as u32, y], Duration::ZERO);
-                            pixel.copy_from_slice(&decided.bytes);
-                            if let Some(value) = values.get_mut(i) {
-                                *value = decided.value;
+                        let mut quick = 0;
+                        for (chunk, bytes) in bytes.chunks_mut(3 * LANES).enumerate() {
+                            let first = chunk * LANES;
+                            let x = k * piece + first;
+                            let eight = lanes.map(|lanes| lanes.row(x as u32, y));
+                            let eight = eight.unwrap_or_default();
+                            if let (true, Some(verdicts)) = (
+                                lanes.is_some(),
+                                verdicts.get_mut(first..first + bytes.len() / 3),
+                            ) {
+                                verdicts.fill(Stage::Single);
                             }
-                            if let Some(verdict) = verdicts.get_mut(i) {
-                                *verdict = decided.stage;
+                            // Also those that are not sure: they are decided below.
+                            bytes.copy_from_slice(&eight.bytes.as_flattened()[..bytes.len()]);
+                            let sure = &eight.sure[..bytes.len() / 3];
+                            quick += sure.iter().filter(|sure| **sure).count();
+                            if eight.sure == [true; LANES] {
+                                continue;
+                            }
+                            for (lane, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                                let (i, x) = (first + lane, x + lane);
+                                if sure[lane] {
+                                    continue;
+                                }
+                                let sampling = self.jitter.pixel(offsets.as_deref(), width, x);
+                                let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
+                                tally.decided(decided.stage, [x as u32, y], Duration::ZERO);
+                                pixel.copy_from_slice(&decided.bytes);
+                                if let Some(value) = values.get_mut(i) {
+                                    *value = decided.value;
+                                }
+                                if let Some(verdict) = verdicts.get_mut(i) {
+                                    *verdict = decided.stage;
+                                }
                             }
                         }
+                        tally.add(Stage::Single, quick as u64);
                         Ok(tally)
                     })
                     .try_reduce(Tally::default, |a, b| Ok(a.merge(b)))

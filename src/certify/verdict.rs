@@ -6,6 +6,7 @@ use crate::frame::{Band, Stage};
 pub fn color(stage: Stage) -> [u8; 3] {
     match stage {
         Stage::Gpu => [40, 40, 40],
+        Stage::Single => [80, 80, 80],
         Stage::Bounded => [60, 110, 200],
         Stage::Multiprecision => [240, 228, 66],
         Stage::Exact => [240, 240, 240],
@@ -17,6 +18,7 @@ pub fn color(stage: Stage) -> [u8; 3] {
 pub fn meaning(stage: Stage) -> &'static str {
     match stage {
         Stage::Gpu => "the GPU, which is sure",
+        Stage::Single => "f32 with error bounds, on the CPU",
         Stage::Bounded => "f64 with error bounds",
         Stage::Multiprecision => "intervals of many bits",
         Stage::Exact => "exact arithmetic: it lies on a border exactly",

@@ -180,6 +180,7 @@ fast: the GPU's f32 as it comes. A few bytes in a hundred thousand differ by one
 A second picture of the same size, .png or .ppm, that shows what decided each pixel:
 
   dark grey  the GPU, which was sure
+  light grey f32 with error bounds, on the CPU
   blue       f64 with error bounds, on the CPU
   yellow     intervals of many bits
   white      exact arithmetic: the pixel lies on a border exactly

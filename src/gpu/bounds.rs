@@ -51,6 +51,18 @@ pub const NAMED: &[(&str, f64)] = &[
     ("WHEEL_ROUNDINGS", 20.0),
 ];
 
+/// The constant of this name, rounded up.
+///
+/// # Panics
+/// If there is none: the names are written in the program.
+pub fn named(name: &str) -> f32 {
+    let constant = NAMED.iter().find(|(n, _)| *n == name);
+    up(constant.map_or_else(
+        || unreachable!("no constant is named {name}"),
+        |(_, value)| *value,
+    ))
+}
+
 /// The pixels of the picture, and how rays pass through them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screen {

@@ -9,6 +9,7 @@ use super::finish::{Digest, Finish, Stop, Wrong};
 use super::{Backend, Emit, Error, Report, Settings};
 use crate::certify::pixels::{Tracer, Wanted};
 use crate::certify::{Tally, trust};
+use crate::cpu::lanes::Lanes;
 use crate::frame::Band;
 use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;
@@ -178,7 +179,8 @@ impl Job<'_> {
         if rows.is_empty() {
             return Ok(());
         }
-        self.on_threads(|| self.tracer.stages());
+        let stages = self.on_threads(|| self.tracer.stages());
+        let lanes = self.on_threads(|| Lanes::new(stages.bounded(), self.scene, self.settings));
         let wanted = Wanted {
             values: self.settings.values,
             verdicts: self.settings.verdicts,
@@ -191,7 +193,7 @@ impl Job<'_> {
         while end > rows.start {
             let kernel = Instant::now();
             let (band, counted) =
-                self.on_threads(|| self.tracer.band(end - height..end, wanted))?;
+                self.on_threads(|| self.tracer.band(end - height..end, wanted, lanes.as_ref()))?;
             tally = tally.merge(counted);
             let seconds = kernel.elapsed().as_secs_f64();
             report.seconds.kernel += seconds;

@@ -10,6 +10,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod faults;
+mod lanes;
 mod pictures;
 mod primary;
 mod support;
