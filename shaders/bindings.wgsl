@@ -6,7 +6,12 @@ struct Job {
     size: vec2u,
     // 0, for `barrier`.
     zero: u32,
+//#if partial
+    // Records that `partials` has room for.
+    room: u32,
+//#else
     unused: u32,
+//#end
 }
 
 @group(0) @binding(0) var<uniform> job: Job;
@@ -16,6 +21,15 @@ struct Job {
 //#else
 // Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
 @group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
+//#end
+//#if partial
+// Pixels of which only some samples are sure: a list without order. Those for which there is no room are counted too.
+struct Partials {
+    count: atomic<u32>,
+    // Records of PARTIAL_WORDS: place in `pixels`, the sum of the sure samples, its error, the bits of the samples in it.
+    words: array<u32>,
+}
+@group(0) @binding(6) var<storage, read_write> partials: Partials;
 //#end
 //#if any_object
 // One for each object of the scene, in file order.

@@ -537,6 +537,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if any_object
 //#if samples
     var traced: Traced;
+//#if partial
+    // The bits of the samples that the sum holds, and how many they are. What is not there, for whatever reason, the CPU adds.
+    var summed: array<u32, SUMMED_WORDS>;
+    var count = 0u;
+//#end
     for (var sample = 0u; sample < SAMPLES; sample += 1u) {
         steps += 1u;
 //#if course
@@ -545,13 +550,46 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let offset = jitter_hash(pixel, sample);
 //#end
         let one = ray_trace(camera_getdir(pixel, offset));
+//#if partial
+        // What a doubtful sample brings means nothing.
+        let sure = one.verdict == 0u;
+        traced.color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), sure);
+        traced.error += select(vec3f(0.0), one.error * (1.01 / f32(SAMPLES)), sure) + 3.0 * U * traced.color;
+        summed[sample / 32u] |= select(0u, 1u << (sample % 32u), sure);
+        count += select(0u, 1u, sure);
+        if steps > STEPS_LIMIT {
+            break;
+        }
+//#else
         traced.color += one.color * (1.0 / f32(SAMPLES));
         traced.error += one.error * (1.01 / f32(SAMPLES)) + 3.0 * U * traced.color; //~
         traced.verdict |= one.verdict;
         if traced.verdict != 0u {
             break;
         }
+//#end
     }
+//#if partial
+    traced.verdict = select(UNDECIDED, 0u, count == SAMPLES);
+    if (count > 0u) & (count < SAMPLES) {
+        let record = atomicAdd(&partials.count, 1u);
+        if record < job.room {
+            let first = record * PARTIAL_WORDS;
+            let sum = bitcast<vec3u>(traced.color);
+            let error = bitcast<vec3u>(traced.error);
+            partials.words[first] = place;
+            partials.words[first + 1u] = sum.x;
+            partials.words[first + 2u] = sum.y;
+            partials.words[first + 3u] = sum.z;
+            partials.words[first + 4u] = error.x;
+            partials.words[first + 5u] = error.y;
+            partials.words[first + 6u] = error.z;
+            for (var i = 0u; i < SUMMED_WORDS; i += 1u) {
+                partials.words[first + 7u + i] = summed[i];
+            }
+        }
+    }
+//#end
 //#else
     let traced = ray_trace(camera_getdir(pixel));
 //#end

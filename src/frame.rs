@@ -71,6 +71,30 @@ pub struct Decided {
     pub stage: Stage,
 }
 
+/// What is known of a pixel of several samples before the CPU decides it: the share of those that the GPU is sure of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Part<'a> {
+    /// 255 times the share that the sure samples have in the pixel's mean.
+    pub sum: [f32; 3],
+    /// How far that may be off.
+    pub error: [f32; 3],
+    /// A bit for each sample that is in the sum, from the lowest up, 32 to a word.
+    pub summed: &'a [u32],
+}
+
+impl Part<'_> {
+    /// Whether a sample is in the sum.
+    pub fn holds(&self, sample: u32) -> bool {
+        let word = self.summed.get(sample as usize / 32);
+        word.is_some_and(|word| word >> (sample % 32) & 1 != 0)
+    }
+
+    /// How many samples are in the sum.
+    pub fn samples(&self) -> u32 {
+        self.summed.iter().map(|word| word.count_ones()).sum()
+    }
+}
+
 /// A pixel that needs more rays than allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(

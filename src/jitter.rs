@@ -156,6 +156,17 @@ pub enum Sampling<'a> {
     Given(&'a [[f64; 2]]),
 }
 
+impl Sampling<'_> {
+    /// How many rays.
+    pub fn samples(&self) -> u32 {
+        match self {
+            Self::Once => 1,
+            Self::Hash(samples) => *samples,
+            Self::Given(offsets) => offsets.len() as u32,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -24,6 +24,8 @@ pub struct Tally {
     counts: [u64; Stage::ALL.len()],
     /// Seconds of CPU time, of all threads together; only single pixels are timed, not whole bands.
     seconds: [f64; Stage::ALL.len()],
+    /// Samples that the CPU traced.
+    samples: u64,
     /// Column and row (from the bottom) of the first presumed pixels met.
     presumed_at: Vec<[u32; 2]>,
 }
@@ -34,8 +36,9 @@ impl Tally {
         self.counts[stage as usize] += pixels;
     }
 
-    /// Counts a pixel that the CPU decided.
-    pub fn decided(&mut self, stage: Stage, at: [u32; 2], took: Duration) {
+    /// Counts a pixel that the CPU decided, and the samples that it traced for it.
+    pub fn decided(&mut self, stage: Stage, at: [u32; 2], samples: u32, took: Duration) {
+        self.samples += u64::from(samples);
         self.add(stage, 1);
         self.seconds[stage as usize] += took.as_secs_f64();
         if stage == Stage::Presumed && self.presumed_at.len() < NAMED {
@@ -49,6 +52,7 @@ impl Tally {
             self.counts[stage as usize] += other.counts[stage as usize];
             self.seconds[stage as usize] += other.seconds[stage as usize];
         }
+        self.samples += other.samples;
         let room = NAMED - self.presumed_at.len();
         self.presumed_at
             .extend(other.presumed_at.into_iter().take(room));
@@ -63,6 +67,11 @@ impl Tally {
     /// All pixels.
     pub fn pixels(&self) -> u64 {
         self.counts.iter().sum()
+    }
+
+    /// Samples that the CPU traced for pixels that it decided.
+    pub fn samples(&self) -> u64 {
+        self.samples
     }
 
     /// Column and row (from the bottom) of the first presumed pixels met.
@@ -124,10 +133,11 @@ mod tests {
         a.add(Stage::Gpu, 100);
         let mut b = Tally::default();
         for x in 0..20 {
-            b.decided(Stage::Presumed, [x, 7], Duration::from_secs(1));
+            b.decided(Stage::Presumed, [x, 7], 3, Duration::from_secs(1));
         }
         let sum = a.merge(b);
         assert_eq!((sum.pixels(), sum.count(Stage::Presumed)), (120, 20));
+        assert_eq!(sum.samples(), 60);
         assert_eq!(sum.presumed_at().len(), NAMED);
         let json = serde_json::to_value(&sum).unwrap();
         assert_eq!((&json["gpu"], &json["presumed"]), (&100.into(), &20.into()));

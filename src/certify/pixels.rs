@@ -11,6 +11,7 @@ use crate::cpu::lanes::{LANES, Lanes};
 use crate::cpu::pixel::Stages;
 use crate::cpu::trace::Limits;
 use crate::frame::{Band, PixelFault};
+use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::prepare::View;
 use crate::scene::Scene;
@@ -70,8 +71,14 @@ impl<'a> Tracer<'a> {
             .get_or_init(|| Stages::new(self.scene, self.view).with_values(self.values))
     }
 
-    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`.
-    pub fn pixels(&self, top: u32, places: &[u32]) -> Result<(Vec<Decided>, Tally), PixelFault> {
+    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`. Of
+    /// those of which something is known only the samples that are missing are traced, if that is enough.
+    pub fn pixels(
+        &self,
+        top: u32,
+        places: &[u32],
+        known: &Partials,
+    ) -> Result<(Vec<Decided>, Tally), PixelFault> {
         let width = self.width as u32;
         // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
         let rows = places.chunk_by(|a, b| a / width == b / width);
@@ -82,7 +89,7 @@ impl<'a> Tracer<'a> {
         let decided: Vec<(Vec<Decided>, Tally)> = if places.len() <= FEW {
             rows.map(|places| {
                 let (y, offsets) = row(places);
-                self.piece(y, offsets.as_deref().map(Vec::as_slice), places)
+                self.piece(y, offsets.as_deref().map(Vec::as_slice), places, known)
             })
             .collect::<Result<_, _>>()?
         } else {
@@ -95,7 +102,7 @@ impl<'a> Tracer<'a> {
                         .map(move |piece| (y, offsets.clone(), piece))
                 })
                 .map(|(y, offsets, piece)| {
-                    self.piece(y, offsets.as_deref().map(Vec::as_slice), piece)
+                    self.piece(y, offsets.as_deref().map(Vec::as_slice), piece, known)
                 })
                 .collect::<Result<_, _>>()?
         };
@@ -114,6 +121,7 @@ impl<'a> Tracer<'a> {
         y: u32,
         offsets: Option<&[[f64; 2]]>,
         places: &[u32],
+        known: &Partials,
     ) -> Result<(Vec<Decided>, Tally), PixelFault> {
         let stages = self.stages();
         let mut tally = Tally::default();
@@ -122,9 +130,20 @@ impl<'a> Tracer<'a> {
         for place in places {
             let x = place % self.width as u32;
             let sampling = self.jitter.pixel(offsets, self.width, x as usize);
-            let decided = stages.trace(&self.limits, sampling, x, y)?;
+            let mut samples = sampling.samples();
+            let mut completed = None;
+            if let Some(part) = known.get(*place) {
+                completed = stages.complete(&self.limits, sampling, x, y, &part)?;
+                if completed.is_some() {
+                    samples -= part.samples().min(samples);
+                }
+            }
+            let decided = match completed {
+                Some(decided) => decided,
+                None => stages.trace(&self.limits, sampling, x, y)?,
+            };
             let after = Instant::now();
-            tally.decided(decided.stage, [x, y], after - before);
+            tally.decided(decided.stage, [x, y], samples, after - before);
             before = after;
             all.push(decided);
         }
@@ -193,7 +212,8 @@ impl<'a> Tracer<'a> {
                                 }
                                 let sampling = self.jitter.pixel(offsets.as_deref(), width, x);
                                 let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
-                                tally.decided(decided.stage, [x as u32, y], Duration::ZERO);
+                                let samples = sampling.samples();
+                                tally.decided(decided.stage, [x as u32, y], samples, Duration::ZERO);
                                 pixel.copy_from_slice(&decided.bytes);
                                 if let Some(value) = values.get_mut(i) {
                                     *value = decided.value;

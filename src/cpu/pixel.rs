@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::camera::camera_setpix;
 use super::trace::{Fault, Limits, Unwatched, ray_trace};
-use crate::frame::{Decided, PixelFault, Stage};
+use crate::frame::{Decided, Part, PixelFault, Stage};
 use crate::jitter::{self, Sampling};
 use crate::prepare::later::Laters;
 use crate::prepare::{Prepared, View};
@@ -29,24 +29,25 @@ fn offsets(sampling: Sampling<'_>, x: u32, y: u32) -> impl Iterator<Item = [f64;
         .chain(given.iter().copied())
 }
 
-/// The mean of a pixel's samples, of which `at` tells each.
-fn mean<R: Real, E>(
+/// The mean of a pixel's samples, of which `at` tells each; those that are not `wanted` count as 0.
+fn mean<R: Real>(
     sampling: Sampling<'_>,
     x: u32,
     y: u32,
-    mut at: impl FnMut(f64, f64) -> Result<V3<R>, E>,
-) -> Result<V3<R>, E> {
+    wanted: impl Fn(u32) -> bool,
+    mut at: impl FnMut(f64, f64) -> Result<V3<R>, Fault>,
+) -> Result<V3<R>, Fault> {
     let (px, py) = (f64::from(x), f64::from(y));
     if let Sampling::Once = sampling {
         return at(px, py);
     }
     let mut sum = V3::new(R::zero(), R::zero(), R::zero());
-    let mut count = 0_u32;
-    for [a, b] in offsets(sampling, x, y) {
-        sum = sum + at(px + a, py + b)?;
-        count += 1;
+    for (sample, [a, b]) in (0..).zip(offsets(sampling, x, y)) {
+        if wanted(sample) {
+            sum = sum + at(px + a, py + b)?;
+        }
     }
-    let n = R::exact(f64::from(count));
+    let n = R::exact(f64::from(sampling.samples()));
     Ok(V3::new(sum.x / n, sum.y / n, sum.z / n))
 }
 
@@ -58,13 +59,16 @@ pub fn make_pixel<R: Real>(
     x: u32,
     y: u32,
 ) -> Result<V3<R>, Fault> {
-    mean(sampling, x, y, |x, y| color(scene, limits, x, y))
+    mean(sampling, x, y, |_| true, |x, y| color(scene, limits, x, y))
 }
 
 /// The colour of a sample.
 fn color<R: Real>(scene: &Prepared<R>, limits: &Limits, x: f64, y: f64) -> Result<V3<R>, Fault> {
     ray_trace(scene, limits, x, y, &mut Unwatched).map(|traced| traced.color)
 }
+
+/// What is added to the error of a part: more than all that was flushed to 0 in its sums.
+const FLUSHED: f64 = 1.0 / (1_u128 << 100) as f64;
 
 /// The scene on the CPU: f64 with error bounds decides nearly every pixel, and exact numbers decide the others. Only a pixel
 /// that is too much for these is presumed.
@@ -142,13 +146,8 @@ impl<'a> Stages<'a> {
         }
         if !matches!(sampling, Sampling::Once) {
             // The samples that need it alone, and their mean in f64.
-            let mut stage = Stage::Bounded;
-            let v = mean(sampling, x, y, |x, y| {
-                let (v, hardest) = self.sample_bounded(limits, x, y)?;
-                stage = stage.max(hardest);
-                Ok(v)
-            });
-            match v.and_then(|v| Ok(self.decided(v, stage)?)) {
+            let v = self.mean_bounded(limits, sampling, x, y, |_| true);
+            match v.and_then(|(v, stage)| Ok(self.decided(v, stage)?)) {
                 Ok(decided) => return Ok(decided),
                 Err(Fault::TooManyRays) => return Err(fault),
                 Err(Fault::Undecided) => {}
@@ -177,26 +176,49 @@ impl<'a> Stages<'a> {
         }
     }
 
-    /// The sample at (px, py), counted in pixels from the bottom left: its value, how far that may be off in each channel,
-    /// and the hardest that it took. Of a presumed sample nothing is certain, and its error is given as 0.
-    pub fn sample(
+    /// Pixel (x, y), of which a part is known: only the other samples are traced. None where that does not tell its bytes.
+    pub fn complete(
         &self,
         limits: &Limits,
-        px: f64,
-        py: f64,
-    ) -> Result<([f64; 3], [f64; 3], Stage), PixelFault> {
-        let [x, y] = [px, py].map(|p| p.round().max(0.0) as u32);
-        let (v, stage) = self
-            .sample_bounded(limits, px, py)
-            .map_err(|_| PixelFault {
+        sampling: Sampling<'_>,
+        x: u32,
+        y: u32,
+        part: &Part<'_>,
+    ) -> Result<Option<Decided>, PixelFault> {
+        let rest = self.mean_bounded(limits, sampling, x, y, |sample| !part.holds(sample));
+        let full = Bounded::exact(255.0);
+        let [r, g, b] = [0, 1, 2].map(|i| {
+            let (value, error) = (f64::from(part.sum[i]), f64::from(part.error[i]) + FLUSHED);
+            Bounded { value, error } / full
+        });
+        match rest.and_then(|(rest, stage)| Ok(self.decided(V3::new(r, g, b) + rest, stage)?)) {
+            Ok(decided) => Ok(Some(decided)),
+            Err(Fault::Undecided) => Ok(None),
+            Err(Fault::TooManyRays) => Err(PixelFault {
                 x,
                 y,
                 max_rays: limits.max_rays,
-            })?;
-        let channels = [v.x, v.y, v.z];
-        // The bound is kept low by its own roundings until it is used.
-        let error = channels.map(|c| c.error * Bounded::GROW);
-        Ok((channels.map(|c| c.value), error, stage))
+            }),
+        }
+    }
+
+    /// What the samples that are `wanted` bring to the mean of pixel (x, y), each by the numbers that it needs, and the
+    /// hardest that they took. Of presumed samples nothing is certain, and their errors count as 0.
+    fn mean_bounded(
+        &self,
+        limits: &Limits,
+        sampling: Sampling<'_>,
+        x: u32,
+        y: u32,
+        wanted: impl Fn(u32) -> bool,
+    ) -> Result<(V3<Bounded>, Stage), Fault> {
+        let mut stage = Stage::Bounded;
+        let v = mean(sampling, x, y, wanted, |x, y| {
+            let (v, hardest) = self.sample_bounded(limits, x, y)?;
+            stage = stage.max(hardest);
+            Ok(v)
+        })?;
+        Ok((v, stage))
     }
 
     /// The colour of a sample.

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::bounds;
-use super::features::FeatureSet;
+use super::features::{FeatureSet, PARTIAL_HEAD};
 use super::literal::{
     literal, plane_literal, rectangle_literal, sphere_literal, vector, world_plane_literal,
     world_sphere_literal,
@@ -132,6 +132,10 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
     }
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
+    let words = features.partial_words();
+    count("partial", "PARTIAL_WORDS", words as usize);
+    let summed = words.saturating_sub(PARTIAL_HEAD);
+    count("partial", "SUMMED_WORDS", summed as usize);
     // The last round of each of up to four loops only finds its end.
     count("counted", "LANES", features.lanes as usize);
     count(

@@ -72,6 +72,13 @@ pub struct LitFeatures {
 /// compiling costs about a millisecond an object.
 pub const UNROLLED_OBJECTS: usize = 32;
 
+/// Of pixels with more samples than this no record is left, as it would be too long: if one sample is in doubt, the CPU
+/// computes all.
+pub const MOST_PARTIAL: u32 = 1024;
+
+/// Words of such a record before the bits of its samples: place, three sums, three errors.
+pub const PARTIAL_HEAD: u32 = 7;
+
 impl FeatureSet {
     /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a limit on
     /// loops (see [`Gpu::lanes`](super::device::Gpu::lanes)).
@@ -121,6 +128,16 @@ impl FeatureSet {
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
         self.planes || self.rectangles || self.spheres
+    }
+
+    /// Words of a record that the shader leaves of a pixel of which only some samples are sure; 0 where it leaves none.
+    pub fn partial_words(&self) -> u32 {
+        let some = self.any_object() && self.certified;
+        if some && (2..=MOST_PARTIAL).contains(&self.samples) {
+            PARTIAL_HEAD + self.samples.div_ceil(32)
+        } else {
+            0
+        }
     }
 
     /// Numbers of the `pplane` shaders used.
@@ -218,6 +235,7 @@ impl FeatureSet {
             ("from_center", psphere || lit.spheres),
             ("values", self.values),
             ("samples", any && self.samples > 1),
+            ("partial", self.partial_words() > 0),
             ("course", any && self.course),
             ("counted", any && (is_lit || self.tiles || self.samples > 1)),
             ("lit", is_lit),

@@ -19,6 +19,8 @@ pub struct Pipeline {
     pub pixel_bytes: u64,
     /// Samples whose offsets the shader reads, for each pixel; 0 where it does not.
     pub offsets: u32,
+    /// Words of a record that the shader leaves of a pixel with sure and doubtful samples; 0 where it leaves none.
+    pub partial_words: u32,
     /// Seconds for compiling, and for packing and uploading.
     pub seconds: [f64; 2],
     buffers: Vec<(u32, wgpu::Buffer)>,
@@ -63,21 +65,25 @@ impl Pipeline {
             } else {
                 0
             },
+            partial_words: features.partial_words(),
             seconds: [compile_seconds, upload_seconds],
             buffers,
         })
     }
 
-    /// Binds the scene, a job, a buffer for its pixels, and one for the offsets of its samples if they are read.
+    /// Binds the scene, a job, a buffer for its pixels, one for the list of those with doubtful samples if there is one, and
+    /// one for the offsets of its samples if they are read.
     pub fn bind(
         &self,
         gpu: &Gpu,
         job: &wgpu::Buffer,
         pixels: &wgpu::Buffer,
+        partials: Option<&wgpu::Buffer>,
         offsets: Option<&wgpu::Buffer>,
     ) -> wgpu::BindGroup {
         let own = [(0, job), (1, pixels)]
             .into_iter()
+            .chain(partials.map(|partials| (6, partials)))
             .chain(offsets.map(|offsets| (16, offsets)));
         let entries: Vec<_> = own
             .chain(

@@ -9,7 +9,7 @@ use crate::certify::pixels::Tracer;
 use crate::certify::spot::spots;
 use crate::certify::{Stage, Tally};
 use crate::frame::Band;
-use crate::gpu::bands::Rendered;
+use crate::gpu::bands::{Partials, Rendered};
 
 /// Takes bands from the GPU, one after the other.
 pub(super) struct Finish<'a, 's, 'e> {
@@ -101,14 +101,41 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
 
     /// Finishes a band and hands it on; not before its sure pixels were checked.
     pub(super) fn band(&mut self, rendered: Rendered) -> Result<(), Stop> {
-        let Rendered { mut band, doubtful } = rendered;
+        let Rendered {
+            mut band,
+            doubtful,
+            partials,
+        } = rendered;
         let pixels = band.rgb.len() / 3;
         let top = band.rows.end - 1;
+        let start = Instant::now();
+        let (decided, tally) = self.tracer.pixels(top, &doubtful, &partials)?;
+        if self.verdicts {
+            band.verdicts = Some(vec![Stage::Gpu; pixels]);
+        }
+        // Those that owe nothing to the GPU; of the others its samples are worth a check.
+        let mut alone = Vec::new();
+        for (place, decided) in doubtful.iter().zip(decided) {
+            *three(&mut band, *place) = decided.bytes;
+            if let Some(values) = &mut band.values {
+                values[*place as usize] = decided.value;
+            }
+            if let Some(verdicts) = &mut band.verdicts {
+                verdicts[*place as usize] = decided.stage;
+            }
+            if partials.get(*place).is_none() || decided.stage == Stage::Presumed {
+                alone.push(*place);
+            }
+        }
+        let counted = std::mem::take(&mut self.tally).merge(tally);
+        self.tally = counted;
+        self.tally.add(Stage::Gpu, (pixels - doubtful.len()) as u64);
+        self.seconds[0] += start.elapsed().as_secs_f64();
         if self.certified {
             let start = Instant::now();
             let width = (pixels / band.rows.len()) as u32;
-            let places = spots(width, &band.rows, &doubtful);
-            let (decided, _) = self.tracer.pixels(top, &places)?;
+            let places = spots(width, &band.rows, &alone);
+            let (decided, _) = self.tracer.pixels(top, &places, &Partials::default())?;
             for (place, decided) in places.iter().zip(decided) {
                 let gpu = three(&mut band, *place);
                 if *gpu != decided.bytes {
@@ -122,24 +149,6 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
             self.spot_checks += places.len() as u64;
             self.seconds[1] += start.elapsed().as_secs_f64();
         }
-        let start = Instant::now();
-        let (decided, tally) = self.tracer.pixels(top, &doubtful)?;
-        if self.verdicts {
-            band.verdicts = Some(vec![Stage::Gpu; pixels]);
-        }
-        for (place, decided) in doubtful.iter().zip(decided) {
-            *three(&mut band, *place) = decided.bytes;
-            if let Some(values) = &mut band.values {
-                values[*place as usize] = decided.value;
-            }
-            if let Some(verdicts) = &mut band.verdicts {
-                verdicts[*place as usize] = decided.stage;
-            }
-        }
-        let counted = std::mem::take(&mut self.tally).merge(tally);
-        self.tally = counted;
-        self.tally.add(Stage::Gpu, (pixels - doubtful.len()) as u64);
-        self.seconds[0] += start.elapsed().as_secs_f64();
         let start = Instant::now();
         (self.emit)(&band)?;
         self.seconds[2] += start.elapsed().as_secs_f64();

@@ -58,6 +58,10 @@ pub struct Report {
     pub refined: u64,
     /// The same, in hundredths of all pixels.
     pub refined_percent: f64,
+    /// Samples that the CPU traced for them: of a pixel of which the GPU is sure of some only the others, if that was enough.
+    pub refined_samples: u64,
+    /// The same, in hundredths of all samples.
+    pub refined_samples_percent: f64,
     /// How many pixels each stage decided.
     pub decided: Tally,
     /// Pixels proven to lie on a border exactly.
@@ -84,6 +88,13 @@ impl Report {
             0
         };
         self.refined_percent = 100.0 * self.refined as f64 / self.pixels.max(1) as f64;
+        self.refined_samples = if self.backend == Backend::Gpu {
+            tally.samples()
+        } else {
+            0
+        };
+        let samples = (self.pixels * u64::from(self.samples)).max(1);
+        self.refined_samples_percent = 100.0 * self.refined_samples as f64 / samples as f64;
         self.ties = tally.count(Stage::Exact);
         self.presumed = tally.count(Stage::Presumed);
         self.presumed_at = tally.presumed_at().to_vec();
@@ -204,6 +215,8 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
         pixels: 0,
         refined: 0,
         refined_percent: 0.0,
+        refined_samples: 0,
+        refined_samples_percent: 0.0,
         decided: Tally::default(),
         ties: 0,
         presumed: 0,

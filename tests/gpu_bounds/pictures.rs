@@ -82,7 +82,7 @@ pub(crate) fn count(
         first: [0, height - 1],
         size: [width, height],
         zero: 0,
-        unused: 0,
+        room: 0,
     };
     let job = gpu
         .device
@@ -102,7 +102,7 @@ pub(crate) fn count(
     };
     let pixels = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let staging = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let bind_group = pipeline.bind(gpu, &job, &pixels, None);
+    let bind_group = pipeline.bind(gpu, &job, &pixels, None, None);
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -257,7 +257,7 @@ fn job() -> Vec<u8> {
         first: [0; 2],
         size: [1; 2],
         zero: 0,
-        unused: 0,
+        room: 0,
     };
     bytemuck::bytes_of(&job).to_vec()
 }

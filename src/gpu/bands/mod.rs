@@ -2,6 +2,7 @@
 //! handed on. No dispatch should take longer than about half a second: a real GPU's watchdog resets longer ones.
 
 pub(crate) mod assembly;
+pub(crate) mod partial;
 mod plan;
 mod slot;
 
@@ -18,6 +19,7 @@ use plan::Plan;
 use slot::Slot;
 
 pub use assembly::Rendered;
+pub use partial::Partials;
 
 /// Most pixels of one dispatch: 8 MiB of packed bytes, twice for two dispatches under way, twice for reading back.
 const MAX_PIXELS: u64 = 2 << 20;
@@ -70,7 +72,7 @@ pub fn run(
     ];
     gpu.check()?;
     let mut plan = Plan::new(width, rows, largest, frame.tests, frame.band_rows);
-    let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
+    let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16, pipeline.partial_words);
     let mut times = BandTimes::default();
     let mut next = 0;
     let mut open = 0;

@@ -8,6 +8,7 @@ use super::super::device::Gpu;
 use super::super::pack::Job;
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
+use super::partial;
 use super::plan::Rectangle;
 use super::{BandTimes, OFFSET_BYTES};
 use crate::jitter::Jitter;
@@ -19,10 +20,30 @@ pub(super) struct Slot {
     offsets: Option<wgpu::Buffer>,
     pixels: wgpu::Buffer,
     staging: wgpu::Buffer,
+    list: Option<List>,
     bind_group: wgpu::BindGroup,
     clock: Option<Clock>,
     pixel_bytes: u64,
     pending: Option<(wgpu::SubmissionIndex, Rectangle)>,
+}
+
+/// The list of pixels with sure and doubtful samples.
+#[derive(Debug)]
+struct List {
+    records: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    /// Words of a record.
+    words: u32,
+}
+
+impl List {
+    /// Records that this dispatch has room for, and the bytes of a list of them.
+    fn of(list: Option<&Self>, rectangle: &Rectangle) -> (u32, u64) {
+        list.map_or((0, 0), |list| {
+            let room = partial::room(rectangle.pixels(), list.words);
+            (room, partial::bytes(room, list.words))
+        })
+    }
 }
 
 /// Timestamps before and after a dispatch.
@@ -85,12 +106,27 @@ impl Slot {
                 wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             )
         });
-        let bind_group = pipeline.bind(gpu, &job, &pixels, offsets.as_ref());
+        let words = pipeline.partial_words;
+        let list = (words > 0).then(|| {
+            let size = partial::bytes(partial::room(largest, words), words);
+            let usage = wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST;
+            let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            List {
+                records: buffer("partials", size, usage),
+                staging: buffer("partials staging", size, read),
+                words,
+            }
+        });
+        let records = list.as_ref().map(|list| &list.records);
+        let bind_group = pipeline.bind(gpu, &job, &pixels, records, offsets.as_ref());
         Self {
             job,
             offsets,
             pixels,
             staging,
+            list,
             bind_group,
             clock,
             pixel_bytes: pipeline.pixel_bytes,
@@ -107,11 +143,12 @@ impl Slot {
     ) {
         let columns = rectangle.columns.end - rectangle.columns.start;
         let rows = rectangle.band.end - rectangle.band.start;
+        let (room, list_bytes) = List::of(self.list.as_ref(), &rectangle);
         let job = Job {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
             zero: 0,
-            unused: 0,
+            room,
         };
         gpu.queue
             .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
@@ -133,6 +170,10 @@ impl Slot {
                 beginning_of_pass_write_index: Some(0),
                 end_of_pass_write_index: Some(1),
             });
+        if let Some(list) = &self.list {
+            // Its counter.
+            encoder.clear_buffer(&list.records, 0, Some(4));
+        }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("plumb"),
@@ -144,12 +185,19 @@ impl Slot {
         }
         let bytes = rectangle.pixels() * self.pixel_bytes;
         encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.staging, 0, bytes);
+        if let Some(list) = &self.list {
+            encoder.copy_buffer_to_buffer(&list.records, 0, &list.staging, 0, list_bytes);
+        }
         if let Some(clock) = &self.clock {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
             encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
         }
         let index = gpu.queue.submit([encoder.finish()]);
         self.staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
+        if let Some(list) = &self.list {
+            list.staging
+                .map_async(wgpu::MapMode::Read, ..list_bytes, |_| ());
+        }
         if let Some(clock) = &self.clock {
             clock.staging.map_async(wgpu::MapMode::Read, .., |_| ());
         }
@@ -199,7 +247,19 @@ impl Slot {
             .staging
             .get_mapped_range(..bytes)
             .map_err(|error| lost(error.to_string()))?;
-        assembly.take(&rectangle, &view);
+        match &self.list {
+            None => assembly.take(&rectangle, &view, &[]),
+            Some(list) => {
+                let (_, bytes) = List::of(Some(list), &rectangle);
+                let records = list
+                    .staging
+                    .get_mapped_range(..bytes)
+                    .map_err(|error| lost(error.to_string()))?;
+                assembly.take(&rectangle, &view, &records);
+                drop(records);
+                list.staging.unmap();
+            }
+        }
         drop(view);
         self.staging.unmap();
         times.kernel += kernel;

@@ -182,8 +182,8 @@ pub struct Job {
     pub size: [u32; 2],
     /// 0, which only the host knows.
     pub zero: u32,
-    /// Nothing.
-    pub unused: u32,
+    /// Records that the list of pixels with doubtful samples has room for; 0 where there is no list.
+    pub room: u32,
 }
 
 /// The camera's numbers, which go into the text of the shader.
