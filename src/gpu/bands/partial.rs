@@ -1,0 +1,182 @@
+//! Pixels of which the GPU is sure of some samples only: the list of what it has of them.
+//!
+//! The shader appends a record for each (`Partials` in `shaders/bindings.wgsl`), in an order that changes from run to run,
+//! as long as there is room. A pixel without a record loses nothing but time: the CPU traces all of its samples.
+
+use super::plan::Rectangle;
+use crate::frame::Part;
+use crate::gpu::features::PARTIAL_HEAD;
+
+/// Bytes of the counter before the records.
+const COUNTER: u64 = 4;
+/// Most bytes of the records of one dispatch: as many as its packed pixels have at most.
+const MAX_BYTES: u64 = 8 << 20;
+/// So many records have room in any dispatch that has as many pixels.
+const LEAST: u64 = 256;
+
+/// How many records a dispatch of so many pixels has room for, of so many words each: a quarter of the pixels may have
+/// doubtful samples. (At 16 samples up to an eighth has in scenes of ours.)
+pub(super) fn room(pixels: u64, words: u32) -> u32 {
+    let most = MAX_BYTES / (4 * u64::from(words.max(1)));
+    let room = (pixels / 4).max(LEAST).min(pixels).min(most) as u32;
+    #[cfg(test)]
+    let room = tests::room(room);
+    room
+}
+
+/// Bytes of a list with room for so many records.
+pub(super) fn bytes(room: u32, words: u32) -> u64 {
+    COUNTER + 4 * u64::from(room) * u64::from(words)
+}
+
+/// What is known of the pixels of a band.
+#[derive(Debug, Clone, Default)]
+pub struct Partials {
+    /// Words of a record.
+    stride: usize,
+    words: Vec<u32>,
+    /// The places of the pixels in the band, in rising order once it is finished, and the numbers of their records.
+    places: Vec<(u32, u32)>,
+}
+
+impl Partials {
+    /// What is known of the pixel at a place of the band (counted from its top left).
+    pub fn get(&self, place: u32) -> Option<Part<'_>> {
+        let found = self.places.binary_search_by_key(&place, |(at, _)| *at);
+        let (_, record) = self.places.get(found.ok()?)?;
+        let words = self.words.chunks_exact(self.stride).nth(*record as usize)?;
+        let (head, summed) = words.split_at_checked(PARTIAL_HEAD as usize)?;
+        let three = |first: usize| [0, 1, 2].map(|i| f32::from_bits(head[first + i]));
+        Some(Part {
+            sum: three(1),
+            error: three(4),
+            summed,
+        })
+    }
+
+    /// Adds the records that a dispatch left for its rectangle of a band of this width: `list` is as the shader wrote it.
+    pub(super) fn take(&mut self, rectangle: &Rectangle, width: u32, stride: u32, list: &[u8]) {
+        let mut words = list
+            .as_chunks()
+            .0
+            .iter()
+            .map(|word| u32::from_le_bytes(*word));
+        let Some(count) = words.next() else {
+            return;
+        };
+        self.stride = stride as usize;
+        let before = self.words.len();
+        // Where there were more than there was room for, the list ends first.
+        let wanted = (count as usize).saturating_mul(self.stride);
+        self.words.extend(words.take(wanted));
+        #[cfg(test)]
+        tests::spoil(&mut self.words[before..], self.stride);
+        let columns = rectangle.columns.end - rectangle.columns.start;
+        for (i, record) in self.words[before..].chunks_exact(self.stride).enumerate() {
+            let (row, column) = (record[0] / columns, record[0] % columns);
+            if u64::from(record[0]) < rectangle.pixels() {
+                let place = row * width + rectangle.columns.start + column;
+                self.places.push((place, (before / self.stride + i) as u32));
+            }
+        }
+    }
+
+    /// Puts the records in order.
+    pub(super) fn finish(&mut self) {
+        self.places.sort_unstable();
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// What may be wrong with every record.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub(crate) enum Fault {
+        /// A doubtful sample counts as if it were in the sum.
+        Bit,
+        /// The red of the sum is off by a byte.
+        Sum,
+    }
+
+    thread_local! {
+        static ROOM: Cell<Option<u32>> = const { Cell::new(None) };
+        static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
+    }
+
+    /// Lets no dispatch of this thread have room for more records.
+    pub(crate) fn leave_room_for(records: Option<u32>) {
+        ROOM.set(records);
+    }
+
+    /// Spoils the records that this thread gets.
+    pub(crate) fn spoil_records(fault: Option<Fault>) {
+        FAULT.set(fault);
+    }
+
+    pub(super) fn room(room: u32) -> u32 {
+        ROOM.get().map_or(room, |least| least.min(room))
+    }
+
+    pub(super) fn spoil(words: &mut [u32], stride: usize) {
+        for record in words.chunks_exact_mut(stride.max(1)) {
+            match FAULT.get() {
+                None => {}
+                Some(Fault::Bit) => record[7] |= record[7] + 1,
+                Some(Fault::Sum) => record[1] = (f32::from_bits(record[1]) + 1.0).to_bits(),
+            }
+        }
+    }
+
+    #[test]
+    fn a_quarter_of_the_pixels_has_room_and_the_list_is_bounded() {
+        assert_eq!(room(1, 8), 1);
+        assert_eq!(room(300, 8), 256);
+        assert_eq!(room(4000, 8), 1000);
+        assert_eq!(u64::from(room(2 << 20, 8)) * 32, MAX_BYTES);
+        assert!(bytes(room(2 << 20, 39), 39) <= MAX_BYTES + COUNTER);
+    }
+
+    /// Two rectangles side by side, records in any order, one list too long for its room, one place that is none.
+    #[test]
+    fn records_are_found_at_their_places() {
+        let record = |place: u32, sum: f32, bits: [u32; 2]| {
+            let words = [place, 0, 0, 0, 0, 0, 0, bits[0], bits[1]];
+            words.map(|word| if word == 0 { sum.to_bits() } else { word })
+        };
+        let list = |count: u32, records: &[[u32; 9]]| {
+            let words = [&[count][..], records.as_flattened()].concat();
+            words
+                .iter()
+                .flat_map(|w| w.to_le_bytes())
+                .collect::<Vec<_>>()
+        };
+        let mut rectangle = Rectangle {
+            band: 10..12,
+            columns: 0..3,
+            last: false,
+        };
+        let mut partials = Partials::default();
+        let left = [record(4, 1.5, [5, 1]), record(2, 2.5, [1, 2]), [9; 9]];
+        partials.take(&rectangle, 5, 9, &list(2, &left));
+        rectangle.columns = 3..5;
+        let right = [record(3, 3.5, [3, 4]), record(4, 4.5, [3, 4])];
+        partials.take(&rectangle, 5, 9, &list(7, &right));
+        partials.finish();
+        let places: Vec<u32> = partials.places.iter().map(|(place, _)| *place).collect();
+        assert_eq!(places, [2, 6, 9]);
+        for (place, sum, bits) in [(2, 2.5, [1, 2]), (6, 1.5, [5, 1]), (9, 3.5, [3, 4])] {
+            let part = partials.get(place).unwrap();
+            assert_eq!((part.sum, part.error), ([sum; 3], [sum; 3]));
+            assert_eq!(part.summed, bits);
+        }
+        let part = partials.get(6).unwrap();
+        let held: Vec<u32> = (0..70).filter(|sample| part.holds(*sample)).collect();
+        assert_eq!((held, part.samples()), (vec![0, 2, 32], 3));
+        assert_eq!(partials.get(3), None);
+        assert_eq!(Partials::default().get(0), None);
+    }
+}
