@@ -526,6 +526,14 @@ fn ray_trace(ray: Ray) -> Traced {
 }
 //#end
 
+//#if partial
+// Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.
+fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
+    (*sum).color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), counts);
+    (*sum).error += select(vec3f(0.0), one.error * (1.01 / f32(SAMPLES)), counts) + 3.0 * U * (*sum).color;
+}
+//#end
+
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= job.size) {
@@ -538,9 +546,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if samples
     var traced: Traced;
 //#if partial
-    // The bits of the samples that the sum holds, and how many they are. What is not there, for whatever reason, the CPU adds.
+    // The same of the samples that are worth keeping should the pixel be doubtful: their bits, and how many they are. What
+    // is not among them, for whatever reason, the CPU adds.
+    var part: Traced;
     var summed: array<u32, SUMMED_WORDS>;
-    var count = 0u;
+    var kept = 0u;
+    var sure = 0u;
 //#end
     for (var sample = 0u; sample < SAMPLES; sample += 1u) {
         steps += 1u;
@@ -551,12 +562,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
         let one = ray_trace(camera_getdir(pixel, offset));
 //#if partial
-        // What a doubtful sample brings means nothing.
-        let sure = one.verdict == 0u;
-        traced.color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), sure);
-        traced.error += select(vec3f(0.0), one.error * (1.01 / f32(SAMPLES)), sure) + 3.0 * U * traced.color;
-        summed[sample / 32u] |= select(0u, 1u << (sample % 32u), sure);
-        count += select(0u, 1u, sure);
+        let fine = (one.verdict == 0u) & all(one.error < vec3f(FINE));
+        add_sample(&traced, one, one.verdict == 0u);
+        add_sample(&part, one, fine);
+        summed[sample / 32u] |= select(0u, 1u << (sample % 32u), fine);
+        kept += select(0u, 1u, fine);
+        sure += select(0u, 1u, one.verdict == 0u);
         if steps > STEPS_LIMIT {
             break;
         }
@@ -570,25 +581,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
     }
 //#if partial
-    traced.verdict = select(UNDECIDED, 0u, count == SAMPLES);
-    if (count > 0u) & (count < SAMPLES) {
-        let record = atomicAdd(&partials.count, 1u);
-        if record < job.room {
-            let first = record * PARTIAL_WORDS;
-            let sum = bitcast<vec3u>(traced.color);
-            let error = bitcast<vec3u>(traced.error);
-            partials.words[first] = place;
-            partials.words[first + 1u] = sum.x;
-            partials.words[first + 2u] = sum.y;
-            partials.words[first + 3u] = sum.z;
-            partials.words[first + 4u] = error.x;
-            partials.words[first + 5u] = error.y;
-            partials.words[first + 6u] = error.z;
-            for (var i = 0u; i < SUMMED_WORDS; i += 1u) {
-                partials.words[first + 7u + i] = summed[i];
-            }
-        }
-    }
+    traced.verdict = select(UNDECIDED, 0u, sure == SAMPLES);
 //#end
 //#else
     let traced = ray_trace(camera_getdir(pixel));
@@ -604,6 +597,26 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
 //#else
     let bytes = camera_setpix(traced.color) | traced.verdict;
+//#end
+//#if partial
+    if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
+        let record = atomicAdd(&partials.count, 1u);
+        if record < job.room {
+            let first = record * PARTIAL_WORDS;
+            let color = bitcast<vec3u>(part.color);
+            let error = bitcast<vec3u>(part.error);
+            partials.words[first] = place;
+            partials.words[first + 1u] = color.x;
+            partials.words[first + 2u] = color.y;
+            partials.words[first + 3u] = color.z;
+            partials.words[first + 4u] = error.x;
+            partials.words[first + 5u] = error.y;
+            partials.words[first + 6u] = error.z;
+            for (var i = 0u; i < SUMMED_WORDS; i += 1u) {
+                partials.words[first + 7u + i] = summed[i];
+            }
+        }
+    }
 //#end
 //#if values
     pixels[place] = vec4u(bitcast<vec3u>(traced.color), bytes);

@@ -440,6 +440,9 @@ fn what_is_not_used_is_not_there() {
         ("mirror.beam.dir =", &|i| matches!(i, Mirror | Glint)),
         ("through.weight", &|i| i == Glass),
         ("power(", &|i| i == Glint),
+        ("partial", &|_| false),
+        ("room", &|_| false),
+        ("summed", &|_| false),
         ("jitter_hash", &|_| false),
         ("offsets[", &|_| false),
     ];
@@ -461,6 +464,11 @@ fn what_is_not_used_is_not_there() {
     assert!(composed(&[Plane, Samples]).0.contains("jitter_hash"));
     let course = composed(&[Plane, CourseSamples]).0;
     assert!(course.contains("offsets[") && !course.contains("jitter_hash"));
+    // Samples are in doubt one by one where pixels are certified.
+    assert!(course.contains("partials.count") && course.contains("room: u32"));
+    for without in [[Plane, Samples, Fast], [Plane, Samples, Values]] {
+        assert!(!composed(&without).0.contains("partials"), "{without:?}");
+    }
     assert!(!composed(&[Plane, Lamp]).0.contains("light.axis)"));
     assert!(composed(&[Plane, Spotlight]).0.contains("light.axis)"));
 }
@@ -521,7 +529,10 @@ mod layout {
             .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
             .collect();
         let dark = assert_valid(&composed(&dark).0, "all without lights");
-        same_layout!(module, "Job", pack::Job, first, size, zero, unused);
+        let sampled = assert_valid(&composed(&[Plane, Samples]).0, "samples");
+        same_layout!(sampled, "Job", pack::Job, first, size, zero, room);
+        // Without samples the last word is not read.
+        assert_eq!(wgsl_struct(&module, "Job").1, size_of::<pack::Job>());
         same_layout!(dark, "Object", pack::Object, ambient, kind);
         same_layout!(
             module,

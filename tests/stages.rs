@@ -7,8 +7,8 @@ use std::path::Path;
 
 use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Limits, Unwatched, ray_trace};
-use plumb::frame::Stage;
-use plumb::jitter::Sampling;
+use plumb::frame::{Part, Stage};
+use plumb::jitter::{self, Sampling};
 use plumb::prepare::later::Laters;
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Bounded, Lazy, Real};
@@ -148,21 +148,61 @@ fn values_are_the_nearest_f32() {
     }
 }
 
+/// A pixel part of whose samples is known: the others alone are traced, and its bytes are those of the whole. A part that
+/// is off, or that says it holds a sample more than it does, is seen in the bytes.
 #[test]
-fn samples_come_with_their_errors() {
+fn what_is_missing_of_a_part_is_added() {
+    const SAMPLES: u32 = 40;
     let path = common::scenes().join("lit/mirror_balls.txt");
     let scene = common::read(&path);
-    let stages = Stages::new(&scene, View::new(0.0, 16));
+    let view = View::new(0.0, SAMPLES);
+    let stages = Stages::new(&scene, view);
+    let plain = Prepared::<f64>::new(&scene, view);
     let limits = Limits::default();
-    for i in 0..40 {
-        let (x, y) = (f64::from(i * 16) + 0.25, f64::from(i * 9) - 0.125);
-        let (value, error, stage) = stages.sample(&limits, x, y).unwrap();
-        assert!(error.iter().zip(value).all(|(e, v)| *e <= 1e-9 * (v + 1.0)));
-        assert!(stage < Stage::Presumed);
+    // The samples that the part holds: none, some, all but one of the second word.
+    for held in [[0, 0], [0x00ff_0f37, 0x51], [!0, 0x7f]] {
+        let (mut open, mut seen) = (0, [0; 2]);
+        for i in 0..40 {
+            let (x, y) = (i * 16, i * 9);
+            let mut sum = [0.0; 3];
+            for sample in (0..SAMPLES).filter(|s| held[*s as usize / 32] >> (s % 32) & 1 != 0) {
+                let [a, b] = jitter::hash(x, y, sample);
+                let (px, py) = (f64::from(x) + a, f64::from(y) + b);
+                let color = ray_trace(&plain, &limits, px, py, &mut Unwatched)
+                    .unwrap()
+                    .color;
+                for (sum, c) in sum.iter_mut().zip([color.x, color.y, color.z]) {
+                    *sum += 255.0 * c / f64::from(SAMPLES);
+                }
+            }
+            let sum = sum.map(|c| c as f32);
+            let error = sum.map(|c| 1e-6 * c);
+            let sampling = Sampling::Hash(SAMPLES);
+            let whole = stages.trace(&limits, sampling, x, y).unwrap();
+            let complete = |sum: [f32; 3], error: [f32; 3], summed: &[u32]| {
+                let part = Part { sum, error, summed };
+                let decided = stages.complete(&limits, sampling, x, y, &part).unwrap();
+                decided.map(|decided| decided.bytes)
+            };
+            match complete(sum, error, &held) {
+                Some(bytes) => assert_eq!(bytes, whole.bytes, "({x}, {y})"),
+                None => open += 1,
+            }
+            // Where the error is a byte or more nothing is decided.
+            let white = whole.bytes == [255; 3];
+            assert!(white || complete(sum, [2.0; 3], &held).is_none());
+            let off = complete(sum.map(|c| c + 1.0), error, &held);
+            let more = complete(
+                sum,
+                error,
+                &[held[0] | (held[0] + u32::from(held[0] != !0)), 0xff],
+            );
+            seen[0] += usize::from(off.is_some_and(|bytes| bytes != whole.bytes));
+            seen[1] += usize::from(more.is_some_and(|bytes| bytes != whole.bytes));
+        }
+        assert!(open < 3, "{open} of 40 were not decided");
+        assert!(seen.iter().all(|seen| *seen > 20), "{held:x?}: {seen:?}");
     }
-    let sampling = Sampling::Hash(16);
-    let pixel = stages.trace(&limits, sampling, 160, 90).unwrap();
-    assert!(pixel.stage < Stage::Presumed);
 }
 
 #[test]

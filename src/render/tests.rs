@@ -5,6 +5,7 @@ use super::*;
 use crate::certify::spot::spots;
 use crate::certify::trust::tests::forget_all;
 use crate::gpu::bands::assembly::tests::tamper_with;
+use crate::gpu::bands::partial::tests::{Fault, leave_room_for, spoil_records};
 use crate::gpu::selftest::tests::spoil_next;
 use crate::scene::load_from;
 
@@ -172,4 +173,95 @@ fn a_device_that_fails_the_self_test_is_not_trusted() {
     assert!(report.fallback.unwrap().contains("x + y: "));
     assert!(rgb(&bands) == rgb(&rendered(&settings(Backend::Cpu)).1));
     assert_eq!(unasked.unwrap().backend, Backend::Gpu);
+}
+
+/// A scene with mirrors, glass and shadows, some of whose samples are in doubt.
+fn hard_scene() -> Scene {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lit");
+    let text = std::fs::read(folder.join("mirror_and_glass.txt")).unwrap();
+    let mut scene = load_from("scene", &*text, &folder).unwrap();
+    scene.camera.pixeldim = [93, 71];
+    scene
+}
+
+fn antialiased(
+    backend: Backend,
+    samples: u32,
+    jitter: Spread,
+    band_rows: u32,
+) -> (Result<Report, Error>, Vec<u8>) {
+    let wanted = Settings {
+        samples,
+        jitter,
+        band_rows: Some(band_rows),
+        ..settings(backend)
+    };
+    let mut rgb = Vec::new();
+    let report = render(&hard_scene(), &wanted, &mut |band| {
+        rgb.extend_from_slice(&band.rgb);
+        Ok(())
+    });
+    (report, rgb)
+}
+
+/// Of pixels with doubtful samples the CPU computes those alone; all of them where the list has no room. The bytes are the
+/// same.
+#[test]
+fn only_doubtful_samples_are_computed() {
+    for (samples, jitter) in [(16, Spread::Hash), (40, Spread::Hash), (16, Spread::Course)] {
+        let (_, right) = antialiased(Backend::Cpu, samples, jitter, 30);
+        let (report, bytes) = antialiased(Backend::Gpu, samples, jitter, 30);
+        let report = report.unwrap();
+        assert_eq!((report.backend, &report.revoked), (Backend::Gpu, &None));
+        assert!(bytes == right, "{samples} samples, {jitter:?}");
+        let computed = |room| {
+            leave_room_for(Some(room));
+            let (report, bytes) = antialiased(Backend::Gpu, samples, jitter, 30);
+            leave_room_for(None);
+            let report = report.unwrap();
+            assert_eq!(report.revoked, None);
+            assert!(
+                bytes == right,
+                "{samples} samples, {jitter:?}, room for {room}"
+            );
+            report
+        };
+        let (few, one) = (computed(20), computed(1));
+        // Whatever is in the list, the same pixels are in doubt.
+        assert_eq!([few.refined, one.refined], [report.refined; 2]);
+        let all = report.refined * u64::from(samples);
+        println!(
+            "{samples} samples: {} of {} pixels, {} samples of them, with room for 20 a dispatch {}, for one {}, all are {all}",
+            report.refined,
+            report.pixels,
+            report.refined_samples,
+            few.refined_samples,
+            one.refined_samples
+        );
+        assert!(report.refined_samples < few.refined_samples);
+        assert!(few.refined_samples < one.refined_samples);
+        assert!(one.refined_samples <= all);
+        // Many pixels are in doubt for a few of their samples only.
+        assert!(4 * report.refined_samples < 3 * all, "{report:?}");
+    }
+}
+
+/// A doubtful sample that is dropped is seen in the picture, and so is a sum that is off; and plumb sees it itself where one
+/// of these pixels is checked: one row a band has a checked pixel in each row.
+#[test]
+fn wrong_parts_are_seen() {
+    let (_, right) = antialiased(Backend::Cpu, 16, Spread::Hash, 71);
+    for fault in [Fault::Bit, Fault::Sum] {
+        spoil_records(Some(fault));
+        let (few, bytes) = antialiased(Backend::Gpu, 16, Spread::Hash, 71);
+        let (many, _) = antialiased(Backend::Gpu, 16, Spread::Hash, 1);
+        spoil_records(None);
+        let few = few.unwrap();
+        assert!(few.revoked.is_some() || bytes != right, "{fault:?}");
+        let noticed = match many {
+            Ok(report) => report.revoked.is_some(),
+            Err(error) => matches!(error, Error::Revoked(_)),
+        };
+        assert!(noticed, "{fault:?}");
+    }
 }

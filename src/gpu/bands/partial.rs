@@ -20,7 +20,7 @@ pub(super) fn room(pixels: u64, words: u32) -> u32 {
     let most = MAX_BYTES / (4 * u64::from(words.max(1)));
     let room = (pixels / 4).max(LEAST).min(pixels).min(most) as u32;
     #[cfg(test)]
-    let room = tests::room(room);
+    let room = tests::allowed(room);
     room
 }
 
@@ -117,7 +117,7 @@ pub(crate) mod tests {
         FAULT.set(fault);
     }
 
-    pub(super) fn room(room: u32) -> u32 {
+    pub(super) fn allowed(room: u32) -> u32 {
         ROOM.get().map_or(room, |least| least.min(room))
     }
 
