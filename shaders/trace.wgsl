@@ -525,8 +525,8 @@ fn ray_trace(ray: Ray) -> Traced {
     return traced;
 }
 //#end
-
 //#if partial
+
 // Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.
 fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
     (*sum).color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), counts);

@@ -45,7 +45,13 @@ fn decided(report: &Report) -> String {
         (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
         (Precision::Certified, Backend::Gpu, _) => {
             let percent = report.refined_percent;
-            format!("certified, {percent:.2} % doubtful: {stages}")
+            let samples = if report.samples > 1 {
+                let percent = report.refined_samples_percent;
+                format!(" ({percent:.2} % of the samples)")
+            } else {
+                String::new()
+            };
+            format!("certified, {percent:.2} % doubtful{samples}: {stages}")
         }
         _ => format!("certified: {stages}"),
     }
@@ -141,6 +147,13 @@ mod tests {
         let text = line(&report);
         assert!(
             text.ends_with("GPU card, 0.21 s; certified, 0.26 % doubtful: f64 2"),
+            "{text}"
+        );
+        report.samples = 16;
+        report.refined_samples_percent = 0.021;
+        let text = line(&report);
+        assert!(
+            text.ends_with("certified, 0.26 % doubtful (0.02 % of the samples): f64 2"),
             "{text}"
         );
         report.precision = Precision::Fast;
