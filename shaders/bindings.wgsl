@@ -7,7 +7,7 @@ struct Job {
     // 0, for `barrier`.
     zero: u32,
 //#if partial
-    // Records that `partials` has room for.
+    // Records that there is room for behind the pixels.
     room: u32,
 //#else
     unused: u32,
@@ -20,16 +20,19 @@ struct Job {
 @group(0) @binding(1) var<storage, read_write> pixels: array<vec4u>;
 //#else
 // Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
-@group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
-//#end
 //#if partial
-// Pixels of which only some samples are sure: a list without order. Those for which there is no room are counted too.
-struct Partials {
-    count: atomic<u32>,
-    // Records of PARTIAL_WORDS: place in `pixels`, the sum of the sure samples, its error, the bits of the samples in it.
+// Behind the dispatch's pixels comes a list without order of those of which only some samples are sure: records of
+// PARTIAL_WORDS words, of place, the sum of such samples, its error, the bits of the samples in it. In one buffer with the
+// pixels, since a driver may allow no more than a scene needs anyway.
+struct Pixels {
+    // Records, those for which there was no room too.
+    partials: atomic<u32>,
     words: array<u32>,
 }
-@group(0) @binding(6) var<storage, read_write> partials: Partials;
+@group(0) @binding(1) var<storage, read_write> pixels: Pixels;
+//#else
+@group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
+//#end
 //#end
 //#if any_object
 // One for each object of the scene, in file order.

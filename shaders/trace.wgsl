@@ -600,27 +600,29 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
 //#if partial
     if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
-        let record = atomicAdd(&partials.count, 1u);
+        let record = atomicAdd(&pixels.partials, 1u);
         if record < job.room {
-            let first = record * PARTIAL_WORDS;
+            let first = job.size.x * job.size.y + record * PARTIAL_WORDS;
             let color = bitcast<vec3u>(part.color);
             let error = bitcast<vec3u>(part.error);
-            partials.words[first] = place;
-            partials.words[first + 1u] = color.x;
-            partials.words[first + 2u] = color.y;
-            partials.words[first + 3u] = color.z;
-            partials.words[first + 4u] = error.x;
-            partials.words[first + 5u] = error.y;
-            partials.words[first + 6u] = error.z;
+            pixels.words[first] = place;
+            pixels.words[first + 1u] = color.x;
+            pixels.words[first + 2u] = color.y;
+            pixels.words[first + 3u] = color.z;
+            pixels.words[first + 4u] = error.x;
+            pixels.words[first + 5u] = error.y;
+            pixels.words[first + 6u] = error.z;
             for (var i = 0u; i < SUMMED_WORDS; i += 1u) {
-                partials.words[first + 7u + i] = summed[i];
+                pixels.words[first + 7u + i] = summed[i];
             }
         }
     }
-//#end
+    pixels.words[place] = bytes;
+//#else
 //#if values
     pixels[place] = vec4u(bitcast<vec3u>(traced.color), bytes);
 //#else
     pixels[place] = bytes;
+//#end
 //#end
 }

@@ -465,9 +465,9 @@ fn what_is_not_used_is_not_there() {
     let course = composed(&[Plane, CourseSamples]).0;
     assert!(course.contains("offsets[") && !course.contains("jitter_hash"));
     // Samples are in doubt one by one where pixels are certified.
-    assert!(course.contains("partials.count") && course.contains("room: u32"));
+    assert!(course.contains("pixels.partials") && course.contains("room: u32"));
     for without in [[Plane, Samples, Fast], [Plane, Samples, Values]] {
-        assert!(!composed(&without).0.contains("partials"), "{without:?}");
+        assert!(!composed(&without).0.contains("partial"), "{without:?}");
     }
     assert!(!composed(&[Plane, Lamp]).0.contains("light.axis)"));
     assert!(composed(&[Plane, Spotlight]).0.contains("light.axis)"));

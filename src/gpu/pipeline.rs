@@ -71,19 +71,16 @@ impl Pipeline {
         })
     }
 
-    /// Binds the scene, a job, a buffer for its pixels, one for the list of those with doubtful samples if there is one, and
-    /// one for the offsets of its samples if they are read.
+    /// Binds the scene, a job, a buffer for its pixels, and one for the offsets of its samples if they are read.
     pub fn bind(
         &self,
         gpu: &Gpu,
         job: &wgpu::Buffer,
         pixels: &wgpu::Buffer,
-        partials: Option<&wgpu::Buffer>,
         offsets: Option<&wgpu::Buffer>,
     ) -> wgpu::BindGroup {
         let own = [(0, job), (1, pixels)]
             .into_iter()
-            .chain(partials.map(|partials| (6, partials)))
             .chain(offsets.map(|offsets| (16, offsets)));
         let entries: Vec<_> = own
             .chain(

@@ -102,7 +102,7 @@ pub(crate) fn count(
     };
     let pixels = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let staging = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let bind_group = pipeline.bind(gpu, &job, &pixels, None, None);
+    let bind_group = pipeline.bind(gpu, &job, &pixels, None);
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

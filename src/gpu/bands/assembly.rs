@@ -1,6 +1,6 @@
 //! The band under way: rectangles of pixels come in, a band goes out, with the places of the pixels that are in doubt.
 
-use super::partial::Partials;
+use super::partial::{Layout, Partials};
 use super::plan::Rectangle;
 use crate::frame::Band;
 
@@ -20,26 +20,25 @@ pub struct Rendered {
 pub(super) struct Assembly {
     width: usize,
     values: bool,
-    /// Words of a record of a pixel with sure and doubtful samples.
-    partial_words: u32,
     under_way: Option<Rendered>,
     complete: bool,
 }
 
 impl Assembly {
-    pub(super) fn new(width: u32, values: bool, partial_words: u32) -> Self {
+    pub(super) fn new(width: u32, values: bool) -> Self {
         Self {
             width: width as usize,
             values,
-            partial_words,
             under_way: None,
             complete: false,
         }
     }
 
     /// Copies a rectangle's pixels to their place. Each comes with its verdict in its highest byte, 0 if it is sure: the
-    /// bytes below it have to be taken apart anyway. `list` has the records of those with sure and doubtful samples.
-    pub(super) fn take(&mut self, rectangle: &Rectangle, bytes: &[u8], list: &[u8]) {
+    /// bytes below it have to be taken apart anyway. Behind them are the records of those with sure and doubtful
+    /// samples.
+    pub(super) fn take(&mut self, rectangle: &Rectangle, layout: &Layout, bytes: &[u8]) {
+        let [counter, bytes, records] = layout.split(bytes);
         #[cfg(test)]
         let bytes = &tests::tampered(rectangle, bytes, self.values);
         let rows = (rectangle.band.end - rectangle.band.start) as usize;
@@ -58,7 +57,8 @@ impl Assembly {
             doubtful: Vec::new(),
             partials: Partials::default(),
         });
-        partials.take(rectangle, self.width as u32, self.partial_words, list);
+        let list = [counter, records];
+        partials.take(rectangle, self.width as u32, layout.words, list);
         let columns = rectangle.columns.start as usize..rectangle.columns.end as usize;
         let pixel_bytes = if self.values { 16 } else { 4 };
         for (row, line) in bytes.chunks_exact(columns.len() * pixel_bytes).enumerate() {
@@ -141,7 +141,7 @@ pub(crate) mod tests {
     /// Two rectangles side by side, a band of two rows: every pixel at its place, and no doubtful one dropped.
     #[test]
     fn rectangles_side_by_side_are_one_band() {
-        let mut assembly = Assembly::new(5, false, 0);
+        let mut assembly = Assembly::new(5, false);
         let mut rectangle = Rectangle {
             band: 10..12,
             columns: 0..3,
@@ -156,12 +156,12 @@ pub(crate) mod tests {
             pixel(6, 0),
             pixel(7, 0),
         ];
-        assembly.take(&rectangle, left.as_flattened(), &[]);
+        assembly.take(&rectangle, &Layout::of(4, 0, 6), left.as_flattened());
         assert!(assembly.finished().is_none());
         rectangle.columns = 3..5;
         rectangle.last = true;
         let right = [pixel(3, 1), pixel(4, 0), pixel(8, 0), pixel(9, 2)];
-        assembly.take(&rectangle, right.as_flattened(), &[]);
+        assembly.take(&rectangle, &Layout::of(4, 0, 4), right.as_flattened());
         let rendered = assembly.finished().unwrap();
         let rgb: Vec<u8> = (0..10).flat_map(|n| [n, n + 100, n + 200]).collect();
         assert_eq!(rendered.band.rgb, rgb);

@@ -72,7 +72,7 @@ pub fn run(
     ];
     gpu.check()?;
     let mut plan = Plan::new(width, rows, largest, frame.tests, frame.band_rows);
-    let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16, pipeline.partial_words);
+    let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
     let mut times = BandTimes::default();
     let mut next = 0;
     let mut open = 0;
@@ -113,7 +113,12 @@ fn largest_dispatch(gpu: &Gpu, pipeline: &Pipeline, width: u32, rows: &Range<u32
     let limits = gpu.device.limits();
     let bytes = limits
         .max_storage_buffer_binding_size
-        .min(limits.max_buffer_size);
+        .min(limits.max_buffer_size)
+        - if pipeline.partial_words > 0 {
+            partial::MOST
+        } else {
+            0
+        };
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
     let offsets = u64::from(pipeline.offsets) * OFFSET_BYTES;
     // A row of workgroups at least, whatever it takes; wgpu says so if it is too much.

@@ -1,32 +1,75 @@
 //! Pixels of which the GPU is sure of some samples only: the list of what it has of them.
 //!
-//! The shader appends a record for each (`Partials` in `shaders/bindings.wgsl`), in an order that changes from run to run,
+//! The shader appends a record for each (`Pixels` in `shaders/bindings.wgsl`), in an order that changes from run to run,
 //! as long as there is room. A pixel without a record loses nothing but time: the CPU traces all of its samples.
 
 use super::plan::Rectangle;
 use crate::frame::Part;
 use crate::gpu::features::PARTIAL_HEAD;
+use crate::gpu::pipeline::Pipeline;
 
-/// Bytes of the counter before the records.
+/// Bytes of the counter of records, before the pixels.
 const COUNTER: u64 = 4;
 /// Most bytes of the records of one dispatch: as many as its packed pixels have at most.
 const MAX_BYTES: u64 = 8 << 20;
+/// Most bytes that the list adds to the pixels.
+pub(super) const MOST: u64 = COUNTER + MAX_BYTES;
 /// So many records have room in any dispatch that has as many pixels.
 const LEAST: u64 = 256;
 
+/// What a dispatch leaves in its buffer: the counter of records, the pixels, the records. Pixels alone where there are no
+/// records.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Layout {
+    /// Bytes of the counter.
+    pub(super) counter: u64,
+    /// Bytes of the pixels.
+    pub(super) pixels: u64,
+    /// Words of a record.
+    pub(super) words: u32,
+    /// Records that there is room for.
+    pub(super) room: u32,
+    /// Bytes of all.
+    pub(super) bytes: u64,
+}
+
+impl Layout {
+    /// Of a dispatch of so many pixels.
+    pub(super) fn new(pipeline: &Pipeline, pixels: u64) -> Self {
+        Self::of(pipeline.pixel_bytes, pipeline.partial_words, pixels)
+    }
+
+    pub(super) fn of(pixel_bytes: u64, words: u32, pixels: u64) -> Self {
+        let (counter, room) = match words {
+            0 => (0, 0),
+            words => (COUNTER, room(pixels, words)),
+        };
+        let record = 4 * u64::from(words);
+        Self {
+            counter,
+            pixels: pixels * pixel_bytes,
+            words,
+            room,
+            bytes: counter + pixels * pixel_bytes + u64::from(room) * record,
+        }
+    }
+
+    /// Counter, pixels and records of what a dispatch left.
+    pub(super) fn split<'a>(&self, bytes: &'a [u8]) -> [&'a [u8]; 3] {
+        let (counter, rest) = bytes.split_at(self.counter as usize);
+        let (pixels, records) = rest.split_at(self.pixels as usize);
+        [counter, pixels, records]
+    }
+}
+
 /// How many records a dispatch of so many pixels has room for, of so many words each: half of the pixels may be doubtful. (Of
 /// our scenes at 16 samples up to an eighth are, but they stand close together.)
-pub(super) fn room(pixels: u64, words: u32) -> u32 {
+fn room(pixels: u64, words: u32) -> u32 {
     let most = MAX_BYTES / (4 * u64::from(words.max(1)));
     let room = (pixels / 2).max(LEAST).min(pixels).min(most) as u32;
     #[cfg(test)]
     let room = tests::allowed(room);
     room
-}
-
-/// Bytes of a list with room for so many records.
-pub(super) fn bytes(room: u32, words: u32) -> u64 {
-    COUNTER + 4 * u64::from(room) * u64::from(words)
 }
 
 /// What is known of the pixels of a band.
@@ -54,21 +97,27 @@ impl Partials {
         })
     }
 
-    /// Adds the records that a dispatch left for its rectangle of a band of this width: `list` is as the shader wrote it.
-    pub(super) fn take(&mut self, rectangle: &Rectangle, width: u32, stride: u32, list: &[u8]) {
-        let mut words = list
-            .as_chunks()
-            .0
-            .iter()
-            .map(|word| u32::from_le_bytes(*word));
-        let Some(count) = words.next() else {
+    /// Adds the records that a dispatch left for its rectangle of a band of this width, of `stride` words each.
+    pub(super) fn take(
+        &mut self,
+        rectangle: &Rectangle,
+        width: u32,
+        stride: u32,
+        [counter, records]: [&[u8]; 2],
+    ) {
+        let words = |bytes: &'_ [u8]| -> Vec<u32> {
+            let words = bytes.as_chunks().0.iter();
+            words.map(|word| u32::from_le_bytes(*word)).collect()
+        };
+        let [count] = words(counter)[..] else {
             return;
         };
         self.stride = stride as usize;
         let before = self.words.len();
         // Where there were more than there was room for, the list ends first.
-        let wanted = (count as usize).saturating_mul(self.stride);
-        self.words.extend(words.take(wanted));
+        let wanted = (count as usize).saturating_mul(4 * self.stride);
+        self.words
+            .extend(words(&records[..wanted.min(records.len())]));
         #[cfg(test)]
         tests::spoil(&mut self.words[before..], self.stride);
         let columns = rectangle.columns.end - rectangle.columns.start;
@@ -137,7 +186,11 @@ pub(crate) mod tests {
         assert_eq!(room(300, 8), 256);
         assert_eq!(room(4000, 8), 2000);
         assert_eq!(u64::from(room(2 << 20, 8)) * 32, MAX_BYTES);
-        assert!(bytes(room(2 << 20, 39), 39) <= MAX_BYTES + COUNTER);
+        for words in [8, 39] {
+            let layout = Layout::of(4, words, 2 << 20);
+            assert!(layout.bytes <= layout.pixels + MOST);
+        }
+        assert_eq!(Layout::of(16, 0, 10).bytes, 160);
     }
 
     /// Two rectangles side by side, records in any order, one list too long for its room, one place that is none.
@@ -147,13 +200,8 @@ pub(crate) mod tests {
             let words = [place, 0, 0, 0, 0, 0, 0, bits[0], bits[1]];
             words.map(|word| if word == 0 { sum.to_bits() } else { word })
         };
-        let list = |count: u32, records: &[[u32; 9]]| {
-            let words = [&[count][..], records.as_flattened()].concat();
-            words
-                .iter()
-                .flat_map(|w| w.to_le_bytes())
-                .collect::<Vec<_>>()
-        };
+        let bytes =
+            |words: &[u32]| -> Vec<u8> { words.iter().flat_map(|w| w.to_le_bytes()).collect() };
         let mut rectangle = Rectangle {
             band: 10..12,
             columns: 0..3,
@@ -161,10 +209,20 @@ pub(crate) mod tests {
         };
         let mut partials = Partials::default();
         let left = [record(4, 1.5, [5, 1]), record(2, 2.5, [1, 2]), [9; 9]];
-        partials.take(&rectangle, 5, 9, &list(2, &left));
+        partials.take(
+            &rectangle,
+            5,
+            9,
+            [&bytes(&[2]), &bytes(left.as_flattened())],
+        );
         rectangle.columns = 3..5;
         let right = [record(3, 3.5, [3, 4]), record(4, 4.5, [3, 4])];
-        partials.take(&rectangle, 5, 9, &list(7, &right));
+        partials.take(
+            &rectangle,
+            5,
+            9,
+            [&bytes(&[7]), &bytes(right.as_flattened())],
+        );
         partials.finish();
         let places: Vec<u32> = partials.places.iter().map(|(place, _)| *place).collect();
         assert_eq!(places, [2, 6, 9]);

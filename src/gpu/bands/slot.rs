@@ -20,30 +20,9 @@ pub(super) struct Slot {
     offsets: Option<wgpu::Buffer>,
     pixels: wgpu::Buffer,
     staging: wgpu::Buffer,
-    list: Option<List>,
     bind_group: wgpu::BindGroup,
     clock: Option<Clock>,
-    pixel_bytes: u64,
-    pending: Option<(wgpu::SubmissionIndex, Rectangle)>,
-}
-
-/// The list of pixels with sure and doubtful samples.
-#[derive(Debug)]
-struct List {
-    records: wgpu::Buffer,
-    staging: wgpu::Buffer,
-    /// Words of a record.
-    words: u32,
-}
-
-impl List {
-    /// Records that this dispatch has room for, and the bytes of a list of them.
-    fn of(list: Option<&Self>, rectangle: &Rectangle) -> (u32, u64) {
-        list.map_or((0, 0), |list| {
-            let room = partial::room(rectangle.pixels(), list.words);
-            (room, partial::bytes(room, list.words))
-        })
-    }
+    pending: Option<(wgpu::SubmissionIndex, Rectangle, partial::Layout)>,
 }
 
 /// Timestamps before and after a dispatch.
@@ -65,7 +44,7 @@ impl Slot {
             };
             gpu.device.create_buffer(&descriptor)
         };
-        let size = largest * pipeline.pixel_bytes;
+        let size = partial::Layout::new(pipeline, largest).bytes;
         let job = buffer(
             "job",
             size_of::<Job>() as u64,
@@ -74,7 +53,9 @@ impl Slot {
         let pixels = buffer(
             "pixels",
             size,
-            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
         );
         let staging = buffer(
             "staging",
@@ -106,30 +87,14 @@ impl Slot {
                 wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             )
         });
-        let words = pipeline.partial_words;
-        let list = (words > 0).then(|| {
-            let size = partial::bytes(partial::room(largest, words), words);
-            let usage = wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::COPY_SRC
-                | wgpu::BufferUsages::COPY_DST;
-            let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-            List {
-                records: buffer("partials", size, usage),
-                staging: buffer("partials staging", size, read),
-                words,
-            }
-        });
-        let records = list.as_ref().map(|list| &list.records);
-        let bind_group = pipeline.bind(gpu, &job, &pixels, records, offsets.as_ref());
+        let bind_group = pipeline.bind(gpu, &job, &pixels, offsets.as_ref());
         Self {
             job,
             offsets,
             pixels,
             staging,
-            list,
             bind_group,
             clock,
-            pixel_bytes: pipeline.pixel_bytes,
             pending: None,
         }
     }
@@ -143,12 +108,12 @@ impl Slot {
     ) {
         let columns = rectangle.columns.end - rectangle.columns.start;
         let rows = rectangle.band.end - rectangle.band.start;
-        let (room, list_bytes) = List::of(self.list.as_ref(), &rectangle);
+        let layout = partial::Layout::new(pipeline, rectangle.pixels());
         let job = Job {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
             zero: 0,
-            room,
+            room: layout.room,
         };
         gpu.queue
             .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
@@ -170,9 +135,8 @@ impl Slot {
                 beginning_of_pass_write_index: Some(0),
                 end_of_pass_write_index: Some(1),
             });
-        if let Some(list) = &self.list {
-            // Its counter.
-            encoder.clear_buffer(&list.records, 0, Some(4));
+        if layout.counter > 0 {
+            encoder.clear_buffer(&self.pixels, 0, Some(layout.counter));
         }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -183,25 +147,18 @@ impl Slot {
             pass.set_bind_group(0, &self.bind_group, &[]);
             pass.dispatch_workgroups(columns.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
         }
-        let bytes = rectangle.pixels() * self.pixel_bytes;
+        let bytes = layout.bytes;
         encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.staging, 0, bytes);
-        if let Some(list) = &self.list {
-            encoder.copy_buffer_to_buffer(&list.records, 0, &list.staging, 0, list_bytes);
-        }
         if let Some(clock) = &self.clock {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
             encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
         }
         let index = gpu.queue.submit([encoder.finish()]);
         self.staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
-        if let Some(list) = &self.list {
-            list.staging
-                .map_async(wgpu::MapMode::Read, ..list_bytes, |_| ());
-        }
         if let Some(clock) = &self.clock {
             clock.staging.map_async(wgpu::MapMode::Read, .., |_| ());
         }
-        self.pending = Some((index, rectangle));
+        self.pending = Some((index, rectangle, layout));
     }
 
     /// Waits for the dispatch and takes its pixels; returns how many there were, and the seconds they took.
@@ -211,7 +168,7 @@ impl Slot {
         assembly: &mut Assembly,
         times: &mut BandTimes,
     ) -> Result<(u64, f64), GpuError> {
-        let Some((index, rectangle)) = self.pending.take() else {
+        let Some((index, rectangle, layout)) = self.pending.take() else {
             return Ok((0, 0.0));
         };
         let start = Instant::now();
@@ -242,24 +199,11 @@ impl Slot {
             None => waited,
         };
         let pixels = rectangle.pixels();
-        let bytes = pixels * self.pixel_bytes;
         let view = self
             .staging
-            .get_mapped_range(..bytes)
+            .get_mapped_range(..layout.bytes)
             .map_err(|error| lost(error.to_string()))?;
-        match &self.list {
-            None => assembly.take(&rectangle, &view, &[]),
-            Some(list) => {
-                let (_, bytes) = List::of(Some(list), &rectangle);
-                let records = list
-                    .staging
-                    .get_mapped_range(..bytes)
-                    .map_err(|error| lost(error.to_string()))?;
-                assembly.take(&rectangle, &view, &records);
-                drop(records);
-                list.staging.unmap();
-            }
-        }
+        assembly.take(&rectangle, &layout, &view);
         drop(view);
         self.staging.unmap();
         times.kernel += kernel;
