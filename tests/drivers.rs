@@ -44,7 +44,7 @@ fn plumb(args: &[&str], driver: Option<&Path>) -> Output {
 }
 
 /// The picture from the GPU as PPM, and its report.
-fn picture(scene: &Path, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) {
+fn picture(scene: &Path, samples: &str, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) {
     let scene = scene.to_str().unwrap();
     let args = [
         "render",
@@ -58,6 +58,8 @@ fn picture(scene: &Path, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) 
         "certified",
         "--size",
         SIZE,
+        "--samples",
+        samples,
     ];
     let output = plumb(&args, driver);
     (
@@ -76,9 +78,17 @@ fn two_drivers_make_the_same_pictures() {
         .collect();
     assert!(scenes.len() > 200, "only {} scenes", scenes.len());
     let mut differ = Vec::new();
-    for scene in &scenes {
-        let (one, first) = picture(scene, None);
-        let (other, report) = picture(scene, Some(&second));
+    // Antialiased the largest shader of ours, which has as many buffers as this driver allows, and two others.
+    let antialiased = [
+        "showcase.txt",
+        "lit/mirror_and_glass.txt",
+        "gallery/ring.txt",
+    ];
+    let antialiased = antialiased.map(|name| (common::scenes().join(name), "16"));
+    let once = scenes.iter().map(|path| (path.clone(), "1"));
+    for (scene, samples) in &once.chain(antialiased).collect::<Vec<_>>() {
+        let (one, first) = picture(scene, samples, None);
+        let (other, report) = picture(scene, samples, Some(&second));
         // Scenes whose numbers are beyond f32 are rendered on the CPU.
         let on_cpu = first["fallback"].is_string() && report["fallback"].is_string();
         let same = first["adapter"] == report["adapter"];

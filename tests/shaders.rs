@@ -466,6 +466,9 @@ fn what_is_not_used_is_not_there() {
     assert!(course.contains("offsets[") && !course.contains("jitter_hash"));
     // Samples are in doubt one by one where pixels are certified.
     assert!(course.contains("pixels.partials") && course.contains("room: u32"));
+    // They take no buffer of their own: SwiftShader allows ten, and scenes of ours have as many.
+    let buffers = |chosen: &[Ingredient]| composed(chosen).0.matches("var<storage").count();
+    assert_eq!(buffers(&[Plane, Samples]), buffers(&[Plane]));
     for without in [[Plane, Samples, Fast], [Plane, Samples, Values]] {
         assert!(!composed(&without).0.contains("partial"), "{without:?}");
     }
