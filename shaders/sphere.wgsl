@@ -62,16 +62,16 @@ fn sphere_at(index: u32) -> Sphere {
 // Where a sphere that a primary ray met is met: (H − C)/(r·s) = forms·(X, Y, 1) − center·√disc.
 struct SphereHit {
     form_x: vec3f,
-    inverse_radius: f32,
-    form_y: vec3f,
     // Bound of the errors of the forms, as a vector.
     form_error: f32,
-    form_z: vec3f,
+    form_y: vec3f,
     // gain·|C|/r
     center_size: f32,
+    form_z: vec3f,
+    unused_0: u32,
     // gain·C/r
     center: vec3f,
-    unused: u32,
+    unused_1: u32,
 }
 
 // What `spheres` holds where hits are looked at: in one buffer, as some drivers allow only ten.

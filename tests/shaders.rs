@@ -595,13 +595,13 @@ mod layout {
             "SphereHit",
             pack::SphereHit,
             form_x,
-            inverse_radius,
-            form_y,
             form_error,
-            form_z,
+            form_y,
             center_size,
+            form_z,
+            unused_0,
             center,
-            unused
+            unused_1
         );
         same_layout!(module, "BvhNode", pack::BvhNode, min, first, max, count);
         same_layout!(

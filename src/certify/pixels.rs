@@ -213,7 +213,12 @@ impl<'a> Tracer<'a> {
                                 let sampling = self.jitter.pixel(offsets.as_deref(), width, x);
                                 let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
                                 let samples = sampling.samples();
-                                tally.decided(decided.stage, [x as u32, y], samples, Duration::ZERO);
+                                tally.decided(
+                                    decided.stage,
+                                    [x as u32, y],
+                                    samples,
+                                    Duration::ZERO,
+                                );
                                 pixel.copy_from_slice(&decided.bytes);
                                 if let Some(value) = values.get_mut(i) {
                                     *value = decided.value;

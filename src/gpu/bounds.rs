@@ -144,7 +144,7 @@ fn bound(coefficient: Bounded, most: f64, roundings: f64) -> f64 {
 
 /// An upper bound of |value|, as an f64.
 pub fn most(value: Bounded) -> f64 {
-    (value.value.abs() + value.error) * (1.0 + 1e-9)
+    (value.value.abs() + value.error) * Bounded::GROW
 }
 
 /// The border `at` of a half-plane of pixels, x ≥ at or x ≤ at for one coordinate, as a form whose sign no rounding can

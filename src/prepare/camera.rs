@@ -22,8 +22,9 @@ pub struct Camera<R> {
     pub distance: R,
 }
 
-/// Pixels farther from the screen's corner than this are of no use as anchors: f32 holds integers to 2²⁴.
-const ANCHOR_LIMIT: f64 = 4_194_304.0;
+/// Pixels farther from the screen's corner than this are of no use as anchors, of the camera or of a sphere: f32 holds
+/// integers to 2²⁴.
+pub const ANCHOR_LIMIT: f64 = 4_194_304.0;
 
 impl<R: Real> Camera<R> {
     /// Prepares the camera.

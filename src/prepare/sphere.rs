@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Camera;
+use super::camera::ANCHOR_LIMIT;
 use super::exact::{Ratio, dot, ratio, ratio3, sub};
 use crate::real::{Real, V3};
 
@@ -42,9 +43,6 @@ pub struct Seen<R> {
 
 /// Spheres seen under more than a right angle (ρ² > ½) take the form (e·W)² − κ²·W·W, which is the accurate one there.
 const SMALL_RHO2: f64 = 0.5;
-
-/// As for the camera's anchor: f32 holds integers to 2²⁴.
-const ANCHOR_LIMIT: f64 = 4_194_304.0;
 
 impl<R: Real> Sphere<R> {
     /// Prepares a sphere; None if no ray through the screen can hit it: the viewpoint is in or on it (a ray that starts

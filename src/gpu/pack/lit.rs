@@ -1,7 +1,8 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
-use super::{Light, LitObject, Material, Packed, Surfaces, WorldPlane, WorldSphere, f32x3};
-use crate::gpu::bounds::{U, fits, most, up};
+use super::shared::Surfaces;
+use super::{Light, LitObject, Material, Packed, WorldPlane, WorldSphere, f32x3};
+use crate::gpu::bounds::{U, most, up};
 use crate::prepare::{self, Prepared, World, world};
 use crate::real::{Bounded, Real, V3};
 
@@ -85,32 +86,6 @@ impl Lit {
             clear: used().any(|material| material.clear),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
         }
-    }
-
-    /// Why no bound is to be relied on, as [`Packed::unprovable`].
-    pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
-        let fine = |numbers: &[f32]| numbers.iter().all(|n| fits(*n));
-        if self.late_level {
-            return Some("a light after the first 32 lies on a surface");
-        }
-        let planes = self
-            .planes
-            .iter()
-            .all(|p| fine(&[p.offset, p.origin_0, p.origin_1, p.sides_error]) && fine(&p.lengths));
-        let spheres = self
-            .spheres
-            .iter()
-            .all(|s| fine(&[s.size, s.radius, s.inverse_radius]));
-        let lights = self
-            .lights
-            .iter()
-            .all(|l| fine(&[l.size]) && fine(&l.emissivity));
-        let materials = self
-            .materials
-            .iter()
-            .all(|m| fine(&m.ambient) && fine(&m.diffuse) && fine(&m.specular));
-        (!(planes && spheres && lights && materials))
-            .then_some("an object's or light's numbers are too large")
     }
 
     /// Iterations of the loops over objects outside the tree, for one ray.

@@ -2,7 +2,10 @@
 
 mod lit;
 mod primary;
+mod range;
 mod records;
+mod shared;
+mod surface;
 
 pub use lit::Lit;
 pub use records::*;
@@ -11,13 +14,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bounds::{LARGEST, Screen, U, fits, most, up};
-use crate::prepare::surface::{Pplane, Textured, Tiled};
+use super::bounds::{Screen, U, most, up};
 use crate::prepare::tiles::Tiles;
-use crate::prepare::{self, Prepared, View, world};
-use crate::real::{Bounded, Real, V3};
-use crate::scene::{Scene, Shape};
+use crate::prepare::{self, Prepared, View};
+use crate::real::{Bounded, V3};
+use crate::scene::Scene;
 use crate::settings::{Settings, Spread};
+use shared::Surfaces;
+use surface::{procedural_plane, texplane, tiled_plane};
 
 /// What `Object::kind` says in its low byte.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -242,61 +246,6 @@ impl Packed {
         (0.9 / (most * 1.001 * f64::from(self.camera.gain))).min(f64::from(f32::MAX)) as f32
     }
 
-    /// Why no bound is to be relied on: a number so large that products of such numbers might overflow.
-    fn doubtful_numbers(&self) -> Option<&'static str> {
-        let fine = |numbers: &[f32]| numbers.iter().all(|n| fits(*n));
-        let camera = &self.camera;
-        let far = f64::from(camera.spread) <= 64.0
-            && fine(&camera.offset)
-            && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
-            && fine(&[camera.gain, 1.0 / camera.gain])
-            && f64::from(self.dark) > 1.0 / LARGEST / LARGEST;
-        if !far {
-            return Some("the camera's numbers are too large or too small");
-        }
-        let planes = self
-            .planes
-            .iter()
-            .all(|p| fine(&p.inverse) && fine(&p.front) && fine(&[p.inverse_error, p.front_error]));
-        let rectangles = self.rectangles.iter().all(|r| {
-            let sides = [
-                &r.inverse, &r.front, &r.side_0, &r.side_1, &r.side_2, &r.side_3,
-            ];
-            sides.into_iter().all(|s| fine(s))
-                && fine(&r.side_errors)
-                && fine(&[r.inverse_error, r.front_error])
-        });
-        let spheres = self.spheres.iter().all(|s| {
-            fine(&s.along)
-                && fine(&s.square)
-                && fine(&s.affine)
-                && fine(&[s.gain, s.along_error, s.disc_error])
-        });
-        let points = self.sphere_points.iter().all(|p| {
-            fine(&p.form_x)
-                && fine(&p.form_y)
-                && fine(&p.form_z)
-                && fine(&[p.inverse_radius, p.form_error, p.center_size])
-        });
-        let surfaces = self
-            .tiled_planes
-            .iter()
-            .all(|t| fine(&t.spread) && fine(&t.errors))
-            && self.pplanes.iter().all(|p| {
-                fine(&p.per_unit)
-                    && fine(&p.from_point)
-                    && fine(&[p.index_error, p.from_point_error])
-            })
-            && self
-                .texplanes
-                .iter()
-                .all(|t| fine(&t.spread) && fine(&t.errors) && fine(&[t.origin_0, t.origin_1]));
-        if !(planes && rectangles && spheres && points && surfaces) {
-            return Some("an object's numbers are too large");
-        }
-        self.lit.as_ref().and_then(Lit::doubtful_numbers)
-    }
-
     /// Packs what modulates an object's material, and notes it in the object.
     fn pack_surface(
         &mut self,
@@ -392,64 +341,6 @@ impl Packed {
     }
 }
 
-/// Which objects share a surface, and which never come first on theirs.
-#[derive(Debug)]
-struct Surfaces {
-    /// The number of each object's surface.
-    groups: Vec<u32>,
-    /// Whether no ray hits it: an object that comes before covers all of it, or all of it is before the screen.
-    hidden: Vec<bool>,
-    /// For each surface, whether several objects that are not hidden share it.
-    shared: Vec<bool>,
-}
-
-impl Surfaces {
-    fn new(scene: &Scene, prepared: &Prepared<Bounded>, tolerance: f64) -> Self {
-        let groups = match &prepared.world {
-            Some(world) => world.groups.to_vec(),
-            None => world::groups(scene, prepared.tiles.is_none()),
-        };
-        let count = groups.iter().map(|g| *g as usize + 1).max().unwrap_or(0);
-        let mut covered = vec![false; count];
-        let mut members = vec![0_u32; count];
-        let mut hidden = Vec::with_capacity(groups.len());
-        for (object, group) in scene.objects.iter().zip(&groups) {
-            // A plane of constant z before τ is never hit.
-            let before = matches!(object.shape, Shape::Plane { normal, point, .. }
-                if normal.x == 0.0 && normal.y == 0.0 && point.z > tolerance);
-            let hides = before || covered[*group as usize];
-            hidden.push(hides);
-            if !hides {
-                members[*group as usize] += 1;
-            }
-            if !matches!(
-                object.shape,
-                Shape::Plane {
-                    extent: Some(_),
-                    ..
-                }
-            ) {
-                covered[*group as usize] = true;
-            }
-        }
-        Self {
-            groups,
-            hidden,
-            shared: members.into_iter().map(|n| n > 1).collect(),
-        }
-    }
-
-    /// A number for the object's surface if others share it, else 0.
-    fn shared(&self, object: usize) -> u32 {
-        let group = self.groups[object];
-        if self.shared[group as usize] {
-            group + 1
-        } else {
-            0
-        }
-    }
-}
-
 fn node_size(node: &BvhNode) -> f64 {
     let corner = |i: usize| f64::from(node.min[i].abs().max(node.max[i].abs()));
     corner(0) + corner(1) + corner(2)
@@ -492,81 +383,5 @@ fn bvh_node(node: &prepare::bvh::Node) -> BvhNode {
         first: node.first,
         max: node.max,
         count: node.count,
-    }
-}
-
-/// The bound of an index's error that does not come from the position: of the fraction added to it.
-fn index_error(fraction: Bounded) -> f32 {
-    up(6.0 * U * (1.0 + most(fraction)) + 2.0 * fraction.error)
-}
-
-fn length(row: V3<Bounded>) -> f32 {
-    up(most(row.dot(row).sqrt()))
-}
-
-fn tiled_plane(scene: &Prepared<Bounded>, tiled: &Tiled<Bounded>, own: usize) -> TiledPlane {
-    let (zero, one) = (Bounded::zero(), Bounded::exact(1.0));
-    let world = [V3::new(one, zero, zero), V3::new(zero, zero, one)];
-    let rows = tiled.rows.unwrap_or(world);
-    let rows = [
-        rows[0] * tiled.index[0].per_unit,
-        rows[1] * tiled.index[1].per_unit,
-    ];
-    let [even, odd] = tiled.materials;
-    // The shader gives even sums the object's own material.
-    let (other, flip) = if even == own { (odd, 0) } else { (even, 1) };
-    TiledPlane {
-        row_0: f32x3(rows[0]),
-        fraction_0: tiled.index[0].fraction.value as f32,
-        row_1: f32x3(rows[1]),
-        fraction_1: tiled.index[1].fraction.value as f32,
-        altmaterial: f32x3(scene.palette[other].ambient),
-        altindex: other as u32,
-        parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
-        padding: 0,
-        spread: rows.map(length),
-        errors: tiled.index.map(|i| index_error(i.fraction)),
-        padding_end: [0; 2],
-    }
-}
-
-fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
-    let [x, y] = pplane.from_point;
-    let offset = most(x.offset).max(most(y.offset));
-    ProceduralPlane {
-        per_unit: pplane.index.map(|i| i.per_unit.value as f32),
-        index_error: pplane
-            .index
-            .map(|i| index_error(i.fraction))
-            .into_iter()
-            .fold(0.0, f32::max),
-        fraction: pplane.index.map(|i| i.fraction.value as f32),
-        from_point_error: up(4.0 * U * offset + x.offset.error + y.offset.error),
-        parity: pplane.index.map(|i| i.parity as f32),
-        unused: 0,
-        from_point: [
-            x.per_unit.value as f32,
-            y.per_unit.value as f32,
-            x.offset.value as f32,
-            y.offset.value as f32,
-        ],
-    }
-}
-
-fn texplane(textured: &Textured<Bounded>, first: u32) -> Texplane {
-    let extent = &textured.extent;
-    let [u, v] = textured.per_unit;
-    let rows = [extent.rows[0] * u, extent.rows[1] * v];
-    let origins = [extent.origin[0] * u, extent.origin[1] * v];
-    Texplane {
-        row_0: f32x3(rows[0]),
-        origin_0: origins[0].value as f32,
-        row_1: f32x3(rows[1]),
-        origin_1: origins[1].value as f32,
-        size: textured.size,
-        first,
-        repeats: u32::from(textured.repeats),
-        spread: rows.map(length),
-        errors: origins.map(index_error),
     }
 }

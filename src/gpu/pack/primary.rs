@@ -2,6 +2,7 @@
 
 use super::{Plane, Rectangle, Sphere, SphereHit};
 use crate::gpu::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
+use crate::prepare::camera::ANCHOR_LIMIT;
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
 
@@ -110,9 +111,6 @@ struct Outline {
     /// The largest |X| and |Y| at which the sphere can be hit, or at which a pixel is.
     reach: [f64; 2],
 }
-
-/// As for the camera's anchor: f32 holds integers to 2²⁴.
-const ANCHOR_LIMIT: f64 = 4_194_304.0;
 
 /// W at a pixel.
 fn ray(camera: &Camera<Bounded>, pixel: [i32; 2]) -> V3<Bounded> {
@@ -269,12 +267,12 @@ pub(super) fn sphere_hit(
     let error = [x.1, y.1, z.1].map(f64::from);
     SphereHit {
         form_x: x.0,
-        inverse_radius: inverse_radius.value as f32,
-        form_y: y.0,
         form_error: up(error.iter().map(|e| e * e).sum::<f64>().sqrt() * (1.0 + 1e-9)),
-        form_z: z.0,
+        form_y: y.0,
         center_size: up(most(center.dot(center).sqrt())),
+        form_z: z.0,
+        unused_0: 0,
         center: super::f32x3(center),
-        unused: 0,
+        unused_1: 0,
     }
 }

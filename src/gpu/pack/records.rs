@@ -94,20 +94,20 @@ pub struct Sphere {
 pub struct SphereHit {
     /// First component over (X, Y, 1).
     pub form_x: [f32; 3],
-    /// 1/r.
-    pub inverse_radius: f32,
-    /// Second component.
-    pub form_y: [f32; 3],
     /// Bound of the errors of the forms, as a vector.
     pub form_error: f32,
-    /// Third component.
-    pub form_z: [f32; 3],
+    /// Second component.
+    pub form_y: [f32; 3],
     /// gain·|C|/r.
     pub center_size: f32,
+    /// Third component.
+    pub form_z: [f32; 3],
+    /// Nothing.
+    pub unused_0: u32,
     /// gain·C/r.
     pub center: [f32; 3],
     /// Nothing.
-    pub unused: u32,
+    pub unused_1: u32,
 }
 
 /// `BvhNode` in `shaders/bvh.wgsl`.

@@ -1,0 +1,87 @@
+//! The records of what modulates an object's material: tiles, procedural planes, textures.
+
+use super::{ProceduralPlane, Texplane, TiledPlane, f32x3};
+use crate::gpu::bounds::{U, most, up};
+use crate::prepare::Prepared;
+use crate::prepare::surface::{Pplane, Textured, Tiled};
+use crate::real::{Bounded, Real, V3};
+
+/// The bound of an index's error that does not come from the position: of the fraction added to it.
+fn index_error(fraction: Bounded) -> f32 {
+    up(6.0 * U * (1.0 + most(fraction)) + 2.0 * fraction.error)
+}
+
+fn length(row: V3<Bounded>) -> f32 {
+    up(most(row.dot(row).sqrt()))
+}
+
+pub(super) fn tiled_plane(
+    scene: &Prepared<Bounded>,
+    tiled: &Tiled<Bounded>,
+    own: usize,
+) -> TiledPlane {
+    let (zero, one) = (Bounded::zero(), Bounded::exact(1.0));
+    let world = [V3::new(one, zero, zero), V3::new(zero, zero, one)];
+    let rows = tiled.rows.unwrap_or(world);
+    let rows = [
+        rows[0] * tiled.index[0].per_unit,
+        rows[1] * tiled.index[1].per_unit,
+    ];
+    let [even, odd] = tiled.materials;
+    // The shader gives even sums the object's own material.
+    let (other, flip) = if even == own { (odd, 0) } else { (even, 1) };
+    TiledPlane {
+        row_0: f32x3(rows[0]),
+        fraction_0: tiled.index[0].fraction.value as f32,
+        row_1: f32x3(rows[1]),
+        fraction_1: tiled.index[1].fraction.value as f32,
+        altmaterial: f32x3(scene.palette[other].ambient),
+        altindex: other as u32,
+        parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
+        padding: 0,
+        spread: rows.map(length),
+        errors: tiled.index.map(|i| index_error(i.fraction)),
+        padding_end: [0; 2],
+    }
+}
+
+pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
+    let [x, y] = pplane.from_point;
+    let offset = most(x.offset).max(most(y.offset));
+    ProceduralPlane {
+        per_unit: pplane.index.map(|i| i.per_unit.value as f32),
+        index_error: pplane
+            .index
+            .map(|i| index_error(i.fraction))
+            .into_iter()
+            .fold(0.0, f32::max),
+        fraction: pplane.index.map(|i| i.fraction.value as f32),
+        from_point_error: up(4.0 * U * offset + x.offset.error + y.offset.error),
+        parity: pplane.index.map(|i| i.parity as f32),
+        unused: 0,
+        from_point: [
+            x.per_unit.value as f32,
+            y.per_unit.value as f32,
+            x.offset.value as f32,
+            y.offset.value as f32,
+        ],
+    }
+}
+
+pub(super) fn texplane(textured: &Textured<Bounded>, first: u32) -> Texplane {
+    let extent = &textured.extent;
+    let [u, v] = textured.per_unit;
+    let rows = [extent.rows[0] * u, extent.rows[1] * v];
+    let origins = [extent.origin[0] * u, extent.origin[1] * v];
+    Texplane {
+        row_0: f32x3(rows[0]),
+        origin_0: origins[0].value as f32,
+        row_1: f32x3(rows[1]),
+        origin_1: origins[1].value as f32,
+        size: textured.size,
+        first,
+        repeats: u32::from(textured.repeats),
+        spread: rows.map(length),
+        errors: origins.map(index_error),
+    }
+}
