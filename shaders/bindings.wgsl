@@ -56,6 +56,10 @@ struct Pixels {
 // lists: indices into `spheres`, the nearest first.
 @group(0) @binding(6) var<storage, read> tiles: array<u32>;
 //#end
+//#if tables
+// What is known of indices along columns and rows of pixels: `told` in surface.wgsl.
+@group(0) @binding(17) var<storage, read> tables: array<u32>;
+//#end
 //#if bvh
 @group(0) @binding(7) var<storage, read> bvh: array<BvhNode>;
 //#end

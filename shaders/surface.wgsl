@@ -45,6 +45,11 @@ struct Point {
     error: f32,
     size: f32,
 //#end
+//#if tables
+    // Whether the pixel's own ray met it, and which pixel that is.
+    direct: bool,
+    pixel: vec2i,
+//#end
 //#if from_center
     // (H − center)/radius, on a sphere.
     from_center: vec3f,
@@ -107,6 +112,28 @@ fn certain(clear: vec3f) {
     doubt |= !all(clear > vec3f(0.0));
 }
 //#end
+//#if tables
+
+// What the host knows of the indices at the hit of a pixel's own ray, from the pixel's column and row: 0 where that is
+// nothing. src/gpu/pack/tables.rs says which bit means what.
+fn told(point: Point) -> u32 {
+    let first = tables[point.object];
+    let there = point.direct & (first != 0u);
+    let column = select(0u, first + u32(point.pixel.x), there);
+    let row = select(0u, first + COLUMNS + u32(point.pixel.y), there);
+    return select(0u, tables[column] | tables[row], there);
+}
+//#if odd
+
+// Which indices of tiles or blocks are known, and what has the parity of their floors.
+fn told_known(word: u32) -> vec3<bool> {
+    return (vec3u(word) & vec3u(2u, 8u, 32u)) != vec3u(0u);
+}
+fn told_odd(word: u32) -> vec3f {
+    return vec3f((vec3u(word) >> vec3u(0u, 2u, 4u)) & vec3u(1u));
+}
+//#end
+//#end
 //#if tiled
 
 struct Tiled {
@@ -129,8 +156,15 @@ struct Tiled {
 fn tplane_foreground(plane: Tiled, point: Point) -> bool {
     let position = point.position;
     let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
-    certain(vec3f(abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors), 1.0)); //~
-    let odd = odd3(floor3(vec3f(index, plane.parity + 0.5)));
+    var clear = abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors); //~
+    var whole = floor3(vec3f(index, plane.parity + 0.5));
+//#if tables
+    let word = told(point);
+    clear = select(clear, vec2f(1.0), told_known(word).xy);
+    whole = select(whole, told_odd(word), told_known(word));
+//#end
+    certain(vec3f(clear, 1.0)); //~
+    let odd = odd3(whole);
     return odd3(vec3f(odd.x + odd.y + odd.z)).x == 0.0;
 }
 //#end
@@ -162,11 +196,17 @@ struct PlanePoint {
 // Parities of floor(2·H + 1000), each 0 or 1, for the axes asked for (1, else 0).
 fn pplane_odd(at: PlanePoint, axes: vec3f) -> vec3f {
     let index = at.point.position * at.plane.per_unit + at.plane.fraction;
+    var whole = floor3(index);
 //#if certified
-    let clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
+    var clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
+//#if tables
+    let word = told(at.point);
+    clear = select(clear, vec3f(1.0), told_known(word));
+    whole = select(whole, told_odd(word), told_known(word));
+//#end
     certain(select(vec3f(1.0), clear, axes > vec3f(0.0)));
 //#end
-    return odd3(floor3(index) + at.plane.parity);
+    return odd3(whole + at.plane.parity);
 }
 //#end
 //#if pplane_from_point
@@ -203,13 +243,21 @@ struct Texplane {
 // The texel at a point of a texplane, each channel byte/256.
 fn texel(plane: Texplane, point: Point) -> vec3f {
     let position = point.position;
-    let index = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
+    var index = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
     let size = vec2f(plane.size);
+//#if tables
+    let word = told(point);
+    let known = (vec2u(word) & vec2u(0x8000u, 0x80000000u)) != vec2u(0u);
+    index = select(index, vec2f((vec2u(word) >> vec2u(0u, 16u)) & vec2u(0x7fffu)) + 0.5, known);
+//#end
 //#if certified
     // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
     let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u) | any(size < vec2f(2.0)));
     let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)), select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
-    let clear = abs(index - edge) - (plane.spread * index_error(point) + plane.errors) + lone;
+    var clear = abs(index - edge) - (plane.spread * index_error(point) + plane.errors) + lone;
+//#if tables
+    clear = select(clear, vec2f(1.0), known);
+//#end
     certain(vec3f(clear, 1048576.0 - max(abs(index.x), abs(index.y))));
 //#end
     var p = floor3(vec3f(index, 0.5)).xy;

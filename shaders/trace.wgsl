@@ -142,6 +142,10 @@ fn primary_beam(ray: Ray) -> Beam {
 fn locate(ray: Ray, hit: Hit) -> Point {
     var point: Point;
     point.object = hit.object;
+//#if tables
+    point.pixel = ray.pixel;
+    point.direct = true;
+//#end
 //#if position
     let s = 1.0 / hit.inverse;
     point.position = ray.w * s;

@@ -134,6 +134,7 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         count("tiles", "TILE_HEIGHT", tiles.sides[1] as usize);
         count("tiles", "TILE_COLUMNS", tiles.count[0] as usize);
     }
+    count("tables", "COLUMNS", packed.tables.columns as usize);
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);
     let words = features.partial_words();
@@ -237,27 +238,38 @@ fn procedural(features: &FeatureSet) -> String {
         (PPLANE_WGSL, features.pplanes()),
         (PSPHERE_WGSL, features.pspheres()),
     ] {
-        let mut chosen: BTreeSet<usize> = used.into_iter().map(|n| n as usize).collect();
-        loop {
-            let called: BTreeSet<usize> = (0..table.len())
-                .filter(|&i| {
-                    chosen
-                        .iter()
-                        .any(|&c| c != i && table[c].1.contains(&format!("{}(", table[i].0)))
-                })
-                .collect();
-            let before = chosen.len();
-            chosen.extend(called);
-            if chosen.len() == before {
-                break;
-            }
-        }
-        for i in chosen {
+        for i in with_called(table, used) {
             text.push('\n');
             text.push_str(table[i].1);
         }
     }
     text
+}
+
+/// Shaders of a table by number, and those that they call.
+fn with_called(table: &[(&str, &str)], used: BTreeSet<u32>) -> BTreeSet<usize> {
+    let mut chosen: BTreeSet<usize> = used.into_iter().map(|n| n as usize).collect();
+    loop {
+        let called: BTreeSet<usize> = (0..table.len())
+            .filter(|&i| {
+                chosen
+                    .iter()
+                    .any(|&c| c != i && table[c].1.contains(&format!("{}(", table[i].0)))
+            })
+            .collect();
+        let before = chosen.len();
+        chosen.extend(called);
+        if chosen.len() == before {
+            return chosen;
+        }
+    }
+}
+
+/// Whether a `pplane` shader, or one that it calls, names `helper`.
+pub fn pplane_asks(shader: u32, helper: &str) -> bool {
+    with_called(PPLANE_WGSL, BTreeSet::from([shader]))
+        .into_iter()
+        .any(|i| PPLANE_WGSL[i].1.contains(helper))
 }
 
 /// The cases of `getamb` for the procedural shaders.

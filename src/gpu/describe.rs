@@ -67,6 +67,15 @@ pub fn buffers(scene: &Scene, settings: &Settings) -> String {
     list(&mut text, "tile lists", &packed.tile_lists());
     list(&mut text, "bvh", &packed.bvh);
     list(&mut text, "texplanes", &packed.texplanes);
+    if !packed.tables.words.is_empty() {
+        writeln!(
+            text,
+            "tables: {} words, {} columns",
+            packed.tables.words.len(),
+            packed.tables.columns
+        )
+        .unwrap_or_default();
+    }
     if let Some(lit) = &packed.lit {
         list(&mut text, "lit objects", &lit.objects);
         list(&mut text, "materials", &lit.materials);

@@ -21,6 +21,8 @@ pub struct FeatureSet {
     pub tiles: bool,
     /// Some objects share a surface.
     pub groups: bool,
+    /// There are tables of indices along columns and rows.
+    pub tables: bool,
     /// Pixels come with a verdict.
     pub certified: bool,
     /// Spheres of a lit scene are many and have a tree.
@@ -100,6 +102,7 @@ impl FeatureSet {
             tiles: packed.tiles.is_some(),
             groups: packed.planes.iter().any(|p| p.group != 0)
                 || packed.rectangles.iter().any(|r| r.group != 0),
+            tables: !packed.tables.words.is_empty(),
             certified: settings.precision == Precision::Certified && !settings.values,
             bvh: !packed.bvh.is_empty(),
             unrolled: packed.tiles.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
@@ -210,6 +213,7 @@ impl FeatureSet {
                 is_lit || pplane || psphere || (certified && self.spheres),
             ),
             ("groups", self.groups && certified),
+            ("tables", certified && self.tables),
             ("index", certified && (tiled || textured || pplane)),
             (
                 "doubtful",

@@ -137,6 +137,12 @@ fn upload(
             bytes(&packed.tile_lists()),
         )?;
     }
+    add(
+        "tables",
+        17,
+        "tables of indices",
+        bytes(&packed.tables.words),
+    )?;
     add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
     add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
     add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;

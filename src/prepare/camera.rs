@@ -77,6 +77,19 @@ pub fn origin(pixels: u32, world: f64) -> Ratio {
     }
 }
 
+/// A form over (W.x, W.y, 1), W in world units, as one over (x, y, 1), the pixel.
+pub fn over_pixels(camera: &scene::Camera, form: &[Ratio; 3]) -> [Ratio; 3] {
+    let sides = [camera.worlddim.x, camera.worlddim.y];
+    let view = [camera.viewpoint.x, camera.viewpoint.y];
+    let steps = [0, 1].map(|i| step(camera.pixeldim[i], sides[i]));
+    let offsets = [0, 1].map(|i| origin(camera.pixeldim[i], sides[i]) - ratio(view[i]));
+    [
+        &form[0] * &steps[0],
+        &form[1] * &steps[1],
+        &form[0] * &offsets[0] + &form[1] * &offsets[1] + &form[2],
+    ]
+}
+
 /// The exponent of the power of two next below `z` > 0.
 pub fn exponent(z: f64) -> i32 {
     // Within what `two_to` can invert.

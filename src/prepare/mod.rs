@@ -11,6 +11,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod exact;
+pub mod index;
 pub mod later;
 pub mod material;
 pub mod plane;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::View;
-use super::camera::{origin, step};
+use super::camera::{origin, over_pixels, step};
 use super::exact::{
     Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub, two_to,
 };
@@ -117,6 +117,14 @@ fn across(n: &[Ratio; 3], x: &[Ratio; 3]) -> [Ratio; 3] {
     [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx)
 }
 
+/// Vectors along both sides of a rectangle, rational and of any length: the second is N × the first.
+pub(super) fn along_sides(n: &[Ratio; 3], x: &[Ratio; 3]) -> [[Ratio; 3]; 2] {
+    let first = across(n, x);
+    let cross = |i: usize, j: usize| &n[i] * &first[j] - &n[j] * &first[i];
+    let second = [cross(1, 2), cross(2, 0), cross(0, 1)];
+    [first, second]
+}
+
 /// Unit vectors along the sides of a rectangle: R0 = unit(xdir − (N·xdir)N), R1 = N × R0, N of unit length.
 pub fn rows<R: Real>(normal: DVec3, xdir: DVec3) -> [V3<R>; 2] {
     let across = across(&ratio3(normal), &ratio3(xdir));
@@ -206,26 +214,8 @@ fn side_steps(
     let v = ratio3(camera.viewpoint);
     let n = ratio3(normal);
     let corner = sub(&ratio3(point), &v);
-    let first = across(&n, &ratio3(extent.xdir));
-    let cross = |i: usize, j: usize| &n[i] * &first[j] - &n[j] * &first[i];
-    let second = [cross(1, 2), cross(2, 0), cross(0, 1)];
-    let x = [
-        step(camera.pixeldim[0], camera.worlddim.x),
-        origin(camera.pixeldim[0], camera.worlddim.x) - &v[0],
-    ];
-    let y = [
-        step(camera.pixeldim[1], camera.worlddim.y),
-        origin(camera.pixeldim[1], camera.worlddim.y) - &v[1],
-    ];
-    // A form over (W.x, W.y, 1) as one over (x, y, 1).
-    let over_pixels = |f: &[Ratio; 3]| {
-        [
-            &f[0] * &x[0],
-            &f[1] * &y[0],
-            &f[0] * &x[1] + &f[1] * &y[1] + &f[2],
-        ]
-    };
-    let q = over_pixels(&inverse.map(Clone::clone));
+    let [first, second] = along_sides(&n, &ratio3(extent.xdir));
+    let q = over_pixels(camera, &inverse.map(Clone::clone));
     let mut steps = [None, None, None, None];
     for (i, (row, dimension)) in [(first, extent.dimensions.x), (second, extent.dimensions.y)]
         .into_iter()
@@ -233,11 +223,14 @@ fn side_steps(
     {
         // |row| times p/s, and the same for d − p where |row| is rational.
         let offset = dot(&row, &corner);
-        let p = over_pixels(&[
-            &row[0] - &offset * inverse[0],
-            &row[1] - &offset * inverse[1],
-            -(&row[2] * &v[2]) - &offset * inverse[2],
-        ]);
+        let p = over_pixels(
+            camera,
+            &[
+                &row[0] - &offset * inverse[0],
+                &row[1] - &offset * inverse[1],
+                -(&row[2] * &v[2]) - &offset * inverse[2],
+            ],
+        );
         steps[i] = Step::of(&p);
         steps[i + 2] = root(&dot(&row, &row)).and_then(|length| {
             let d = ratio(dimension) * length;

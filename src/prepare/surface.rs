@@ -84,10 +84,10 @@ pub struct FromPoint<R> {
 }
 
 /// Added to a coordinate before it is divided by the tile's size (the notes; it keeps indices positive in C).
-const TILE_SHIFT: f64 = 10_000.0;
+pub(super) const TILE_SHIFT: f64 = 10_000.0;
 /// floor(2·H + 1000) is floor((H + 500)/½).
-const PPLANE_SHIFT: f64 = 500.0;
-const PPLANE_TILE: f64 = 0.5;
+pub(super) const PPLANE_SHIFT: f64 = 500.0;
+pub(super) const PPLANE_TILE: f64 = 0.5;
 
 impl<R: Real> Surface<R> {
     /// Prepares the surface of `object`.

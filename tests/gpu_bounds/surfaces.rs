@@ -76,7 +76,7 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen
         wgsl,
         &[
             "let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);",
-            "certain(vec3f(abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors), 1.0));",
+            "var clear = abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors);",
         ],
     );
     let objects = modulated(world, 1);
@@ -147,7 +147,7 @@ pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [[Se
         wgsl,
         &[
             "let index = at.point.position * at.plane.per_unit + at.plane.fraction;",
-            "let clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);",
+            "var clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);",
         ],
     );
     let objects = modulated(world, 64 + 2);

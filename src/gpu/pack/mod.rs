@@ -6,9 +6,11 @@ mod range;
 mod records;
 mod shared;
 mod surface;
+mod tables;
 
 pub use lit::Lit;
 pub use records::*;
+pub use tables::Tables;
 
 use std::sync::Arc;
 
@@ -95,6 +97,8 @@ pub struct Packed {
     pub texplanes: Vec<Texplane>,
     /// The texels of all textures that a texplane shows, bottom rows first.
     pub texels: Vec<u32>,
+    /// What is known of the planes' indices along columns and rows.
+    pub tables: Tables,
     /// What a lit scene needs beside.
     pub lit: Option<Lit>,
     /// A surface farther away than where 1/|P| is this is black, whatever it is; of scenes without lights.
@@ -152,6 +156,7 @@ impl Packed {
             pplanes: Vec::new(),
             texplanes: Vec::new(),
             texels: Vec::new(),
+            tables: Tables::new(scene, prepared, &surfaces, settings),
             lit: None,
             dark: 0.0,
             tree_size: 0.0,

@@ -1,0 +1,123 @@
+//! Tables of what is exactly known of a surface's indices along the columns and rows of pixels (docs/NUMERICS.md, section
+//! 9): where floor(index) is a fact of a column or row, the shader takes it from here for the pixels' own rays.
+
+use dashu_int::IBig;
+
+use super::shared::Surfaces;
+use crate::gpu::compose::pplane_asks;
+use crate::prepare::exact::parity;
+use crate::prepare::index::{Index, indices};
+use crate::prepare::{Prepared, Surface};
+use crate::real::Bounded;
+use crate::scene::Scene;
+use crate::settings::{Precision, Settings};
+
+/// `tables` in `shaders/bindings.wgsl`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Tables {
+    /// For each object the place of its first entry, 0 for none; then the entries: of each object one for each column of
+    /// the picture, then one for each row from the bottom. What the entries of a pixel's column and row say together is
+    /// known at the pixel.
+    ///
+    /// Of tiles and blocks bit 2·i + 1 says that index i is known, and bit 2·i whether its floor, less the index's own
+    /// parity, is odd. Of texels bits 15 and 31 say that column and row are known; they are in the bits below.
+    pub words: Vec<u32>,
+    /// Columns of the picture.
+    pub columns: u32,
+}
+
+/// Most entries: a scene that has more surfaces than that would spend longer on them than they save.
+const MOST: usize = 1 << 18;
+
+/// Textures have tables up to this side.
+const MOST_TEXELS: u32 = 0x7fff;
+
+impl Tables {
+    /// The tables of the planes that a primary ray can hit; none where pixels are not certified, or rays pass beside their
+    /// middles.
+    pub(super) fn new(
+        scene: &Scene,
+        prepared: &Prepared<Bounded>,
+        surfaces: &Surfaces,
+        settings: &Settings,
+    ) -> Self {
+        let mut tables = Self::default();
+        if settings.precision != Precision::Certified || settings.values || settings.samples > 1 {
+            return tables;
+        }
+        let pixels = scene.camera.pixeldim;
+        let room = pixels[0] as usize + pixels[1] as usize;
+        for plane in &prepared.planes {
+            let object = plane.object;
+            if surfaces.hidden[object] || tables.words.len() + room > MOST + scene.objects.len() {
+                continue;
+            }
+            let Some(entries) = entries(scene, object, &prepared.surfaces[object]) else {
+                continue;
+            };
+            if tables.words.is_empty() {
+                tables.words = vec![0; scene.objects.len()];
+                tables.columns = pixels[0];
+            }
+            tables.words[object] = tables.words.len() as u32;
+            tables.words.extend(entries);
+        }
+        tables
+    }
+}
+
+/// The entries of a surface; None if nothing is known.
+fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<Vec<u32>> {
+    // (For an index: whether there is anything to decide about it, and the bits of its floor.)
+    let bits: &dyn Fn(usize, &IBig) -> u32 = match surface {
+        Surface::Tiled(tiled) => &|i, floor| parity_bits(i, parity(floor) ^ tiled.index[i].parity),
+        Surface::Pplane(pplane) if pplane_asks(pplane.shader, "pplane_odd(") => {
+            &|i, floor| parity_bits(i, parity(floor) ^ pplane.index[i].parity)
+        }
+        Surface::Textured(textured) if textured.size.iter().all(|s| *s <= MOST_TEXELS) => {
+            &|i, floor| texel_bits(i, floor, textured.size[i], textured.repeats)
+        }
+        _ => return None,
+    };
+    let pixels = scene.camera.pixeldim;
+    let mut words = vec![0; pixels[0] as usize + pixels[1] as usize];
+    let mut known = false;
+    let indices = indices(scene, &scene.objects[object]);
+    let same = |i: usize| match surface {
+        Surface::Tiled(tiled) => tiled.index[i].per_unit.value == 0.0,
+        Surface::Pplane(pplane) => pplane.index[i].per_unit.value == 0.0,
+        _ => false,
+    };
+    for (i, index) in (0..).zip(&indices) {
+        // Of a coordinate that all points of the plane share the records say it.
+        let Some(index) = index.as_ref().filter(|_: &&Index| !same(i)) else {
+            continue;
+        };
+        for (axis, first) in [(0, 0), (1, pixels[0] as usize)] {
+            let floors = index.floors(axis, pixels[axis]);
+            for (word, floor) in words[first..].iter_mut().zip(&floors) {
+                if let Some(floor) = floor {
+                    *word |= bits(i, floor);
+                    known = true;
+                }
+            }
+        }
+    }
+    known.then_some(words)
+}
+
+fn parity_bits(i: usize, odd: u32) -> u32 {
+    (2 | odd) << (2 * i)
+}
+
+fn texel_bits(i: usize, floor: &IBig, size: u32, repeats: bool) -> u32 {
+    let size = IBig::from(size);
+    let place = if repeats {
+        (floor % &size + &size) % &size
+    } else {
+        floor.clone().clamp(IBig::ZERO, size - IBig::ONE)
+    };
+    // It is below 2¹⁵.
+    let place = u32::try_from(place).unwrap_or(0);
+    (0x8000 | place) << (16 * i)
+}

@@ -1,0 +1,203 @@
+//! Indices of tiles, blocks and texels as primary rays see them, exactly: quotients of linear forms over the pixel.
+//!
+//! On most planes of most scenes such an index depends on the pixel's column alone, or on its row alone: the z of a floor,
+//! x and y of a wall that faces the viewer, x and z of a wall that stands upright. There floor(index) is an exact fact of
+//! the column or row, and no pixel need be in doubt about it, tied or not. `gpu::pack` makes tables of these facts.
+
+use dashu_int::IBig;
+use glam::DVec3;
+
+use super::camera::over_pixels;
+use super::exact::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
+use super::plane::along_sides;
+use super::surface::{PPLANE_SHIFT, PPLANE_TILE, TILE_SHIFT};
+use crate::real::{Bounded, Real};
+use crate::scene::{self, Object, Scene, Shape, TextureMode};
+
+/// An index before its floor is taken: top·(x, y, 1) / bottom·(x, y, 1) at the pixel (x, y), where the plane is met if the
+/// divisor is > 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Index {
+    top: [Ratio; 3],
+    /// 1/s, up to a positive factor.
+    bottom: [Ratio; 3],
+}
+
+/// The plane that an index is on, and the camera that sees it.
+struct Seen<'a> {
+    camera: &'a scene::Camera,
+    normal: [Ratio; 3],
+    point: [Ratio; 3],
+}
+
+/// The indices that the surface of an object asks for, in the order in which its shader names them; None for one whose
+/// direction is not rational. Empty for surfaces that ask for none.
+pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
+    let Shape::Plane {
+        normal,
+        point,
+        extent,
+    } = &object.shape
+    else {
+        return Vec::new();
+    };
+    let seen = Seen {
+        camera: &scene.camera,
+        normal: ratio3(*normal),
+        point: ratio3(*point),
+    };
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(ratio3);
+    match object.surface {
+        scene::Surface::Tiled {
+            dimension, xdir, ..
+        } => {
+            let [x, _, z] = axes;
+            let rows = match xdir {
+                None => [Some(x), Some(z)],
+                Some(xdir) => seen.rows(xdir),
+            };
+            let sizes = [dimension.x, dimension.y].map(ratio);
+            rows.iter()
+                .zip(&sizes)
+                .map(|(row, size)| seen.index(row.as_ref()?, &ratio(TILE_SHIFT), size))
+                .collect()
+        }
+        scene::Surface::Procedural { .. } => {
+            let (shift, size) = (ratio(PPLANE_SHIFT), ratio(PPLANE_TILE));
+            axes.iter()
+                .map(|row| seen.index(row, &shift, &size))
+                .collect()
+        }
+        scene::Surface::Textured { texture, mode } => {
+            let Some(extent) = extent else {
+                return Vec::new();
+            };
+            let texels = &scene.textures[texture].texels;
+            let counts = [texels.width, texels.height].map(|n| ratio(f64::from(n)));
+            let camera = &scene.camera;
+            let sizes = match mode {
+                TextureMode::Fit => [
+                    ratio(extent.dimensions.x) / &counts[0],
+                    ratio(extent.dimensions.y) / &counts[1],
+                ],
+                TextureMode::Tile => [
+                    ratio(camera.worlddim.x) / ratio(f64::from(camera.pixeldim[0])),
+                    ratio(camera.worlddim.y) / ratio(f64::from(camera.pixeldim[1])),
+                ],
+            };
+            seen.rows(extent.xdir)
+                .iter()
+                .zip(&sizes)
+                .map(|(row, size)| {
+                    let row = row.as_ref()?;
+                    seen.index(row, &-dot(row, &seen.point), size)
+                })
+                .collect()
+        }
+        scene::Surface::Plain => Vec::new(),
+    }
+}
+
+impl Seen<'_> {
+    /// The unit vectors along the sides, where they are rational.
+    fn rows(&self, xdir: DVec3) -> [Option<[Ratio; 3]>; 2] {
+        along_sides(&self.normal, &ratio3(xdir)).map(|row| {
+            let length = root(&dot(&row, &row))?;
+            Some(row.map(|c| c / &length))
+        })
+    }
+
+    /// (row·H + shift)/size at the hit H; None if the viewpoint lies on the plane.
+    fn index(&self, row: &[Ratio; 3], shift: &Ratio, size: &Ratio) -> Option<Index> {
+        let v = ratio3(self.camera.viewpoint);
+        let n = &self.normal;
+        let k = dot(n, &sub(&self.point, &v));
+        if is_zero(&k) {
+            return None;
+        }
+        // H = V + s·W, with 1/s = N·W/k and W.z = −V.z: the index is ((row·V + shift)·(1/s) + row·W)/size, over 1/s.
+        let over = |form: &[Ratio; 3]| {
+            let [a, b, c] = form;
+            over_pixels(self.camera, &[a.clone(), b.clone(), -(c * &v[2])])
+        };
+        let mut bottom = over(&n.clone().map(|c| c / &k));
+        // As good as any positive factor, and within the range of f64.
+        let largest = bottom
+            .iter()
+            .cloned()
+            .map(abs)
+            .fold(Ratio::ZERO, |a, b| if b > a { b } else { a });
+        if is_zero(&largest) {
+            return None;
+        }
+        let base = (dot(row, &v) + shift) / size;
+        let step = over(row);
+        let mut top = [0, 1, 2].map(|i| &base * &bottom[i] + &step[i] / size);
+        bottom = bottom.map(|c| c / &largest);
+        top = top.map(|c| c / &largest);
+        Some(Index { top, bottom })
+    }
+}
+
+impl Index {
+    /// floor(index) for each column (`axis` 0) or row (1) of `pixels`, where that is the same for all its pixels that meet
+    /// the plane; None where it is not, or none of them does. Nothing at all if that is so everywhere.
+    pub fn floors(&self, axis: usize, pixels: u32) -> Vec<Option<IBig>> {
+        let other = 1 - axis;
+        let (top, bottom) = (&self.top[other], &self.bottom[other]);
+        if is_zero(top) && is_zero(bottom) {
+            return self.line(axis, pixels);
+        }
+        // The lines on which an index is constant meet in one point. The one of them that runs along a column: there the
+        // forms' slopes have the quotient that the forms themselves have.
+        if is_zero(bottom) {
+            return Vec::new();
+        }
+        let cross = |i: usize| top * &self.bottom[i] - bottom * &self.top[i];
+        let (slope, constant) = (cross(axis), cross(2));
+        if is_zero(&slope) {
+            return Vec::new();
+        }
+        let at = -constant / slope;
+        let whole = at.floor();
+        let place = usize::try_from(whole.clone()).ok();
+        match place.filter(|p| *p < pixels as usize && at == Ratio::from(whole)) {
+            Some(place) => {
+                let mut floors = vec![None; pixels as usize];
+                floors[place] = Some((top / bottom).floor());
+                floors
+            }
+            None => Vec::new(),
+        }
+    }
+
+    /// The floors where the index is a function of one coordinate.
+    fn line(&self, axis: usize, pixels: u32) -> Vec<Option<IBig>> {
+        let forms = [
+            &self.top[axis],
+            &self.top[2],
+            &self.bottom[axis],
+            &self.bottom[2],
+        ];
+        let rough = forms.map(Bounded::ratio);
+        (0..pixels)
+            .map(|n| {
+                let at = f64::from(n);
+                let bottom = rough[2].times(at) + rough[3];
+                let index = (rough[0].times(at) + rough[1]) / bottom;
+                match (bottom.positive(), index.floor()) {
+                    (Ok(false), _) => None,
+                    (Ok(true), Ok(floor)) if floor.abs() < WHOLE => Some(IBig::from(floor as i64)),
+                    _ => {
+                        let at = ratio(at);
+                        let bottom = forms[2] * &at + forms[3];
+                        is_positive(&bottom).then(|| ((forms[0] * &at + forms[1]) / bottom).floor())
+                    }
+                }
+            })
+            .collect()
+    }
+}
+
+/// What fits into an i64, with room.
+const WHOLE: f64 = (1_u64 << 52) as f64;
