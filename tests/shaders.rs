@@ -347,6 +347,7 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
         "groups",
         "certified",
         "level",
+        "tables",
     ] {
         assert!(named.contains(name) || name == "any_hit", "{name}");
     }
@@ -425,6 +426,9 @@ fn what_is_not_used_is_not_there() {
         }),
         ("color_wheel", &|i| {
             matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))
+        }),
+        ("tables[", &|i| {
+            matches!(i, Tiled | Pplane(0 | 2) | Texplane(_))
         }),
         ("vec4u", &|i| i == Values),
         ("switch", &|i| {

@@ -201,3 +201,153 @@ impl Index {
 
 /// What fits into an i64, with room.
 const WHOLE: f64 = (1_u64 << 52) as f64;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prepare::exact::is_zero;
+    use crate::scene::load;
+
+    /// What SEMANTICS says an index is, at the hit of the ray through a pixel; None where that misses.
+    fn directly(scene: &Scene, object: &Object, which: usize, pixel: [u32; 2]) -> Option<Ratio> {
+        let Shape::Plane {
+            normal,
+            point,
+            extent,
+        } = &object.shape
+        else {
+            panic!("no plane")
+        };
+        let camera = &scene.camera;
+        let (n, q, v) = (ratio3(*normal), ratio3(*point), ratio3(camera.viewpoint));
+        let world = |i: usize, side: f64| {
+            let (at, pixels) = (f64::from(pixel[i]), f64::from(camera.pixeldim[i]));
+            if pixels > 1.0 {
+                ratio(side) * ratio(at) / ratio(pixels - 1.0)
+            } else {
+                ratio(side) / ratio(2.0)
+            }
+        };
+        let screen = [
+            world(0, camera.worlddim.x),
+            world(1, camera.worlddim.y),
+            Ratio::ZERO,
+        ];
+        let w = sub(&screen, &v);
+        let (ahead, along) = (dot(&n, &sub(&q, &v)), dot(&n, &w));
+        if is_zero(&along) || !is_positive(&(&ahead / &along)) {
+            return None;
+        }
+        let s = ahead / along;
+        let h = [0, 1, 2].map(|i| &v[i] + &s * &w[i]);
+        // A side of a rectangle, of length 1: the scenes here have only such as are rational.
+        let side = |xdir: DVec3| {
+            let x = ratio3(xdir);
+            let (nn, nx) = (dot(&n, &n), dot(&n, &x));
+            let first = [0, 1, 2].map(|i| &x[i] - &n[i] * &nx / &nn);
+            let row = if which == 0 {
+                first
+            } else {
+                let [a, b, c] = &n;
+                let [d, e, f] = &first;
+                [b * f - c * e, c * d - a * f, a * e - b * d]
+            };
+            let length = root(&dot(&row, &row)).unwrap();
+            row.map(|c| c / &length)
+        };
+        Some(match object.surface {
+            scene::Surface::Tiled {
+                dimension, xdir, ..
+            } => {
+                let along = match xdir {
+                    None => h[2 * which].clone(),
+                    Some(xdir) => dot(&side(xdir), &h),
+                };
+                (along + ratio(10_000.0)) / ratio(dimension[which])
+            }
+            scene::Surface::Procedural { .. } => ratio(2.0) * &h[which] + ratio(1000.0),
+            scene::Surface::Textured { texture, mode } => {
+                let extent = extent.unwrap();
+                let p = dot(&side(extent.xdir), &sub(&h, &q));
+                let texels = &scene.textures[texture].texels;
+                let count = [texels.width, texels.height][which];
+                match mode {
+                    TextureMode::Fit => {
+                        p / ratio(extent.dimensions[which]) * ratio(f64::from(count))
+                    }
+                    TextureMode::Tile => {
+                        let pixels = f64::from(camera.pixeldim[which]);
+                        p / (ratio(camera.worlddim[which]) / ratio(pixels))
+                    }
+                }
+            }
+            scene::Surface::Plain => panic!("no index"),
+        })
+    }
+
+    /// Compares all that is known of a scene's indices with each pixel's own; returns how many columns and rows are known.
+    fn known(path: &str, pixeldim: [u32; 2]) -> usize {
+        let mut scene = load(path.as_ref()).unwrap();
+        scene.camera.pixeldim = pixeldim;
+        let mut count = 0;
+        for object in &scene.objects {
+            for (which, index) in indices(&scene, object).into_iter().enumerate() {
+                let Some(index) = index else { continue };
+                for axis in [0, 1] {
+                    let floors = index.floors(axis, pixeldim[axis]);
+                    assert!(floors.is_empty() || floors.len() == pixeldim[axis] as usize);
+                    for (place, floor) in (0..).zip(floors) {
+                        let Some(floor) = floor else { continue };
+                        count += 1;
+                        for other in 0..pixeldim[1 - axis] {
+                            let pixel = if axis == 0 {
+                                [place, other]
+                            } else {
+                                [other, place]
+                            };
+                            if let Some(truth) = directly(&scene, object, which, pixel) {
+                                assert_eq!(floor, truth.floor(), "{}: {which}", object.name);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn what_is_known_of_a_column_or_row_holds_for_its_pixels() {
+        let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+        for (name, pixeldim, least) in [
+            // Floor and ceiling in six rows each; pictures, frieze and wall in all columns and rows; …
+            ("hard/tied_lines", [17, 13], 150),
+            ("hard/tied_lines", [1, 13], 50),
+            ("hard/tied_lines", [16, 1], 50),
+            ("hard/tied_lines", [23, 11], 150),
+            ("hard/tile_edges_tenth", [9, 7], 3),
+            ("hard/millimetres", [21, 16], 1),
+            ("hard/light_years", [21, 16], 1),
+            ("gallery/tiles_back_wall", [20, 15], 30),
+            ("gallery/tiles_side_wall", [20, 15], 15),
+            ("lit/texture_repeated", [20, 15], 30),
+        ] {
+            let count = known(&format!("{scenes}/{name}.txt"), pixeldim);
+            assert!(count >= least, "{name}: {count}");
+        }
+    }
+
+    #[test]
+    fn one_column_may_be_known_where_others_are_not() {
+        // On a floor x is the viewpoint's own along the column under it; V.x = 4 is in column 8 of 17.
+        let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/hard/tied_lines.txt");
+        let scene = load(scene.as_ref()).unwrap();
+        let floor = &indices(&scene, &scene.objects[0]);
+        let x = floor[0].as_ref().unwrap().floors(0, 17);
+        let want: Vec<_> = (0..17)
+            .map(|n| (n == 8).then(|| IBig::from(10_004)))
+            .collect();
+        assert_eq!(x, want);
+        assert!(floor[0].as_ref().unwrap().floors(1, 13).is_empty());
+    }
+}

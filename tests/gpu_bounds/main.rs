@@ -17,9 +17,10 @@ mod support;
 mod surfaces;
 mod world;
 
+use plumb::gpu::device::Gpu;
 use plumb::render::Backend;
 
-use pictures::Count;
+use pictures::{Count, Fault};
 use primary::Picture;
 use support::Seen;
 use world::{Beams, World};
@@ -162,6 +163,7 @@ const PICTURES: &[&str] = &[
     "hard/sphere_by_a_hair",
     "hard/sphere_tiny_far",
     "hard/tangent_rays",
+    "hard/tied_lines",
     "lit/kaleidoscope",
     "lit/mirror_floor",
     "lit/texture_repeated",
@@ -180,8 +182,8 @@ fn whole_pictures() {
         }
         let (rgb, _) = common::picture(&scene, &common::on(Backend::Cpu));
         let settings = common::on(Backend::Gpu);
-        let count = |bounds| pictures::count(&gpu, &scene, &settings, bounds, &rgb);
-        let (right, bare) = (count(true), count(false));
+        let count = |fault| pictures::count(&gpu, &scene, &settings, fault, &rgb);
+        let (right, bare) = (count(Fault::Right), count(Fault::NoBounds));
         println!("{name:<28} {right:?}\n{:<28} {bare:?}", "  without bounds");
         assert_eq!(right.wrong, 0, "{name}: certain, and wrong");
         noticed += usize::from(bare.wrong > 0);
@@ -191,4 +193,42 @@ fn whole_pictures() {
     println!("{with:?}, without bounds {without:?} in {noticed} pictures");
     assert!(4 * with.sure > 3 * with.pixels, "little is certain");
     assert!(without.wrong > 100 && 2 * noticed > PICTURES.len());
+}
+
+/// The picture of a hard scene with a fault or without.
+fn of_hard(gpu: &Gpu, name: &str, fault: Fault) -> Count {
+    let path = common::scenes().join("hard").join(name);
+    let scene = common::read(&path.with_extension("txt"));
+    let (rgb, _) = common::picture(&scene, &common::on(Backend::Cpu));
+    pictures::count(gpu, &scene, &common::on(Backend::Gpu), fault, &rgb)
+}
+
+#[test]
+fn tables_decide_what_runs_along_columns_and_rows() {
+    let gpu = support::open();
+    // Every pixel is on the corner of a tile, and the middle one on a byte's border.
+    let with = of_hard(&gpu, "tile_edges_wall", Fault::Right);
+    let without = of_hard(&gpu, "tile_edges_wall", Fault::NoTables);
+    assert_eq!((with.wrong, without.wrong), (0, 0));
+    assert!(with.sure + 1 >= with.pixels, "{with:?}");
+    assert_eq!(without.sure, 0);
+    for name in ["tied_lines", "lit_tied_lines"] {
+        let with = of_hard(&gpu, name, Fault::Right);
+        let without = of_hard(&gpu, name, Fault::NoTables);
+        println!("{name}: {with:?}, without tables {without:?}");
+        assert_eq!((with.wrong, without.wrong), (0, 0));
+        assert!(2 * (with.pixels - with.sure) < without.pixels - without.sure);
+    }
+}
+
+#[test]
+fn wrong_tables_are_noticed() {
+    let gpu = support::open();
+    // (In row 4 the floor meets the wall, and every pixel is doubtful.)
+    for row in 0..4 {
+        let count = of_hard(&gpu, "tied_lines", Fault::Entry(row));
+        assert!(count.wrong > 0, "row {row}: {count:?}");
+    }
+    let count = of_hard(&gpu, "lit_tied_lines", Fault::ForAllRays);
+    assert!(count.wrong > 0, "{count:?}");
 }

@@ -59,23 +59,54 @@ impl std::ops::AddAssign for Count {
     }
 }
 
-/// Renders with the shader as it is, or without its bounds, and compares what is certain with `rgb`, top row first.
+/// What is wrong with a shader or its records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Fault {
+    /// Nothing.
+    Right,
+    /// All error bounds are zero.
+    NoBounds,
+    /// No object has a table of indices.
+    NoTables,
+    /// In the tables' entry for this row, of the first object that has any, an index is odd that is even, or the other way
+    /// round.
+    Entry(u32),
+    /// Tables are taken for hits of all rays.
+    ForAllRays,
+}
+
+/// Renders with a fault or without, and compares what is certain with `rgb`, top row first.
 pub(crate) fn count(
     gpu: &Gpu,
     scene: &Scene,
     settings: &Settings,
-    bounds: bool,
+    fault: Fault,
     rgb: &[u8],
 ) -> Count {
     let mut packed = Packed::new(scene, settings);
     let features = FeatureSet::new(&packed, settings, gpu.lanes);
     assert_eq!(packed.unprovable, None);
-    let wgsl = if bounds {
-        compose(&packed, &features)
-    } else {
-        without_literal_bounds(&mut packed);
-        with_constant(&compose(&packed, &features), "U", "0f")
-    };
+    let mut wgsl = compose(&packed, &features);
+    let objects = scene.objects.len();
+    match fault {
+        Fault::Right => {}
+        Fault::NoBounds => {
+            without_literal_bounds(&mut packed);
+            wgsl = with_constant(&compose(&packed, &features), "U", "0f");
+        }
+        Fault::NoTables => packed.tables.words[..objects].fill(0),
+        Fault::Entry(row) => {
+            let entry = objects + (scene.camera.pixeldim[0] + row) as usize;
+            let known = packed.tables.words[entry] & 0b10_1010;
+            assert_ne!(known, 0, "nothing to be wrong");
+            packed.tables.words[entry] ^= known >> 1;
+        }
+        Fault::ForAllRays => {
+            const RULE: &str = "point.direct & (first != 0u)";
+            assert!(wgsl.contains(RULE), "no longer in the shader");
+            wgsl = wgsl.replace(RULE, "first != 0u");
+        }
+    }
     let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl).unwrap();
     let [width, height] = scene.camera.pixeldim;
     let job = Job {

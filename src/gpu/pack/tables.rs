@@ -121,3 +121,72 @@ fn texel_bits(i: usize, floor: &IBig, size: u32, repeats: bool) -> u32 {
     let place = u32::try_from(place).unwrap_or(0);
     (0x8000 | place) << (16 * i)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::pack::Packed;
+    use crate::scene::load;
+
+    #[test]
+    fn texels_are_repeated_or_clamped() {
+        let place = |floor: IBig, repeats| {
+            let bits = texel_bits(1, &floor, 5, repeats);
+            assert_eq!(bits & 0x8000_ffff, 0x8000_0000);
+            bits >> 16 & 0x7fff
+        };
+        let huge = IBig::ONE << 100;
+        for (floor, repeated, clamped) in [
+            (IBig::from(-6), 4, 0),
+            (IBig::from(-5), 0, 0),
+            (IBig::from(3), 3, 3),
+            (IBig::from(5), 0, 4),
+            // 2¹⁰⁰ = 4⁵⁰ = 1 modulo 5.
+            (huge.clone(), 1, 4),
+            (-huge, 4, 0),
+        ] {
+            assert_eq!(place(floor.clone(), true), repeated, "{floor}");
+            assert_eq!(place(floor.clone(), false), clamped, "{floor}");
+        }
+    }
+
+    fn scene() -> Scene {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/hard/tied_lines.txt");
+        load(path.as_ref()).unwrap()
+    }
+
+    #[test]
+    fn only_rays_through_the_middles_of_pixels_have_tables() {
+        let words = |settings: Settings| Packed::new(&scene(), &settings).tables.words.len();
+        // Seven objects, each with 17 columns and 13 rows.
+        assert_eq!(words(Settings::default()), 7 + 7 * 30);
+        for samples in [4, 16] {
+            let settings = Settings {
+                samples,
+                ..Settings::default()
+            };
+            assert_eq!(words(settings), 0);
+        }
+        let settings = Settings {
+            precision: Precision::Fast,
+            ..Settings::default()
+        };
+        assert_eq!(words(settings), 0);
+    }
+
+    #[test]
+    fn tables_are_no_longer_than_allowed() {
+        let mut scene = scene();
+        scene.camera.pixeldim = [40_000, 30_000];
+        let tables = Packed::new(&scene, &Settings::default()).tables;
+        assert!(tables.words.len() <= 7 + MOST);
+        let with = tables.words[..7].iter().filter(|first| **first != 0);
+        assert_eq!(with.count(), MOST / 70_000);
+        // Where one has no room there are none at all.
+        scene.camera.pixeldim = [300_000, 2];
+        assert_eq!(
+            Packed::new(&scene, &Settings::default()).tables,
+            Tables::default()
+        );
+    }
+}
