@@ -35,7 +35,7 @@ struct Pixels {
 //#end
 //#end
 //#if any_object
-// One for each object of the scene, in file order.
+// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
 @group(0) @binding(2) var<storage, read> objects: array<Object>;
 //#end
 //#if plane_loop
@@ -55,10 +55,6 @@ struct Pixels {
 // Where the list of each tile of the screen starts here, by rows from the bottom left, and where the last one ends; then the
 // lists: indices into `spheres`, the nearest first.
 @group(0) @binding(6) var<storage, read> tiles: array<u32>;
-//#end
-//#if tables
-// What is known of indices along columns and rows of pixels: `told` in surface.wgsl.
-@group(0) @binding(17) var<storage, read> tables: array<u32>;
 //#end
 //#if bvh
 @group(0) @binding(7) var<storage, read> bvh: array<BvhNode>;

@@ -115,13 +115,14 @@ fn certain(clear: vec3f) {
 //#if tables
 
 // What the host knows of the indices at the hit of a pixel's own ray, from the pixel's column and row: 0 where that is
-// nothing. src/gpu/pack/tables.rs says which bit means what.
+// nothing. src/gpu/pack/tables.rs says which bit means what. (The tables are in the buffer of the objects, in the field
+// `kind`, as some drivers allow only ten buffers.)
 fn told(point: Point) -> u32 {
-    let first = tables[point.object];
+    let first = objects[TABLES + point.object].kind;
     let there = point.direct & (first != 0u);
-    let column = select(0u, first + u32(point.pixel.x), there);
-    let row = select(0u, first + COLUMNS + u32(point.pixel.y), there);
-    return select(0u, tables[column] | tables[row], there);
+    let column = TABLES + select(0u, first + u32(point.pixel.x), there);
+    let row = TABLES + select(0u, first + COLUMNS + u32(point.pixel.y), there);
+    return select(0u, objects[column].kind | objects[row].kind, there);
 }
 //#if odd
 

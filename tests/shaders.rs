@@ -427,7 +427,7 @@ fn what_is_not_used_is_not_there() {
         ("color_wheel", &|i| {
             matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))
         }),
-        ("tables[", &|i| {
+        ("fn told(", &|i| {
             matches!(i, Tiled | Pplane(0 | 2) | Texplane(_))
         }),
         ("vec4u", &|i| i == Values),

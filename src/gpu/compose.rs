@@ -134,6 +134,7 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         count("tiles", "TILE_HEIGHT", tiles.sides[1] as usize);
         count("tiles", "TILE_COLUMNS", tiles.count[0] as usize);
     }
+    count("tables", "TABLES", packed.objects.len());
     count("tables", "COLUMNS", packed.tables.columns as usize);
     count("bvh", "BVH_DEPTH", packed.bvh_depth);
     count("samples", "SAMPLES", features.samples as usize);

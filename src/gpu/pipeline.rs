@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable as _};
 use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::device::Gpu;
 use super::features::FeatureSet;
-use super::pack::Packed;
+use super::pack::{LitObject, Object, Packed};
 
 /// A shader ready to run on a scene.
 #[derive(Debug)]
@@ -116,7 +116,14 @@ fn upload(
             }
             Ok(())
         };
-    add("ambient_only", 2, "objects", bytes(&packed.objects))?;
+    // The tables of indices, in the field `kind`.
+    let words = packed.tables.words.iter();
+    let mut objects = packed.objects.clone();
+    objects.extend(words.clone().map(|&kind| Object {
+        kind,
+        ..Object::zeroed()
+    }));
+    add("ambient_only", 2, "objects", bytes(&objects))?;
     add("plane_loop", 3, "planes", bytes(&packed.planes))?;
     add(
         "rectangle_loop",
@@ -137,19 +144,18 @@ fn upload(
             bytes(&packed.tile_lists()),
         )?;
     }
-    add(
-        "tables",
-        17,
-        "tables of indices",
-        bytes(&packed.tables.words),
-    )?;
     add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
     add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
     add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;
     add("textured", 10, "texplanes", bytes(&packed.texplanes))?;
     add("textured", 11, "texels", bytes(&packed.texels))?;
     if let Some(lit) = &packed.lit {
-        add("lit", 2, "objects", bytes(&lit.objects))?;
+        let mut objects = lit.objects.clone();
+        objects.extend(words.map(|&kind| LitObject {
+            kind,
+            ..LitObject::zeroed()
+        }));
+        add("lit", 2, "objects", bytes(&objects))?;
         add("lit", 12, "materials", bytes(&lit.materials))?;
         add("lit", 13, "lights", bytes(&lit.lights))?;
         add(

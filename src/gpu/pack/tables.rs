@@ -12,7 +12,7 @@ use crate::real::Bounded;
 use crate::scene::Scene;
 use crate::settings::{Precision, Settings};
 
-/// `tables` in `shaders/bindings.wgsl`.
+/// What `told` in `shaders/surface.wgsl` reads, in the order in which it stands there behind the objects.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tables {
     /// For each object the place of its first entry, 0 for none; then the entries: of each object one for each column of
