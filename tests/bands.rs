@@ -15,6 +15,7 @@ const SCENES: &[&str] = &[
     "notes/walls.txt",
     "gallery/spheres_over_tiles.txt",
     "gallery/procedural_all.txt",
+    "hard/tied_lines.txt",
     "lit/shadows_balls.txt",
     "lit/mirror_and_glass.txt",
 ];
