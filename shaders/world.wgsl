@@ -87,13 +87,7 @@ fn met_nearer(closest: ptr<function, Met>, meeting: Meeting, object: u32, group:
     let takes = meeting.hit & (meeting.t > range.beyond) & nearer;
 //#end
     (*closest).t = select((*closest).t, meeting.t, takes);
-//#if certified
-    // Of equal spheres the tree may hold the later one first; the first in the file is the one that counts.
-    let earlier = (group == (*closest).group) & (object < (*closest).object);
-    (*closest).object = select((*closest).object, object, takes | earlier);
-//#else
     (*closest).object = select((*closest).object, object, takes);
-//#end
 }
 
 // The first object that the ray meets in range. The rounds of its loops count `weight` times: 1 where all lanes of a vector

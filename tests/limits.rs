@@ -266,3 +266,41 @@ fn threads_change_nothing() {
     };
     assert!(threads(1) == threads(3));
 }
+
+/// Of equal spheres the first counts. In a tree, too, that makes no pixel doubtful, with lights or without.
+#[test]
+fn spheres_that_stand_twice_are_seen_once() {
+    let balls = |times: usize| {
+        let ball = |i: i32| {
+            let center = DVec3::new(
+                -0.8 + 0.4 * f64::from(i % 10),
+                -0.8 + 0.4 * f64::from(i / 10),
+                -1.0,
+            );
+            [ball(center, 0.15, 1), ball(center, 0.15, 0)]
+        };
+        scene(
+            [64, 64],
+            (0..100)
+                .flat_map(|i| ball(i).into_iter().take(times))
+                .collect(),
+        )
+    };
+    let lamp = Light {
+        name: "lamp".into(),
+        location: DVec3::new(1.0, 1.5, 2.0),
+        emissivity: DVec3::ONE,
+        cone: None,
+    };
+    for lights in [vec![], vec![lamp]] {
+        let [once, twice] = [1, 2].map(|times| Scene {
+            lights: lights.clone(),
+            ..balls(times)
+        });
+        let (gpu, report) = picture(&twice, &on(Backend::Gpu));
+        assert!(report.refined < 200, "{} are doubtful", report.refined);
+        assert!(gpu.iter().any(|byte| *byte > 0), "all is black");
+        assert_eq!(gpu, picture(&twice, &on(Backend::Cpu)).0);
+        assert_eq!(gpu, picture(&once, &on(Backend::Cpu)).0);
+    }
+}

@@ -11,6 +11,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod exact;
+pub mod hidden;
 pub mod index;
 pub mod later;
 pub mod material;
@@ -81,6 +82,10 @@ pub struct Prepared<R> {
     pub materials: Arc<Vec<usize>>,
     /// One for each object of the scene: whether it is a plane, not a sphere.
     pub is_plane: Arc<Vec<bool>>,
+    /// One for each object of the scene: the number of the surface that it is or is part of.
+    pub groups: Arc<Vec<u32>>,
+    /// One for each object of the scene: whether it is never hit. `planes` and `spheres` lack those, here and in `world`.
+    pub hidden: Arc<Vec<bool>>,
     /// Whether some object lets light through.
     pub any_clear: bool,
     /// The materials of the scene.
@@ -95,7 +100,12 @@ impl<R: Real> Prepared<R> {
     /// Prepares `scene`.
     pub fn new(scene: &Scene, view: impl Into<View>) -> Self {
         let view = view.into();
-        let mut prepared = Self::of(scene, view, true);
+        let lit = !scene.lights.is_empty();
+        // Of many spheres the tiles leave out equal ones.
+        let equal_spheres = lit || scene.objects.len() < tiles::WORTHWHILE;
+        let groups = Arc::new(world::groups(scene, equal_spheres));
+        let hidden = hidden::hidden(scene, &groups, view.screen_tolerance);
+        let mut prepared = Self::of(scene, view, true, &hidden);
         prepared.tiles = Tiles::new(scene, &prepared.camera, &prepared.spheres, view).map(Arc::new);
         let materials = scene.objects.iter().map(|object| object.material);
         let is_plane = scene
@@ -105,8 +115,17 @@ impl<R: Real> Prepared<R> {
         prepared.materials = Arc::new(materials.collect());
         prepared.is_plane = Arc::new(is_plane.collect());
         let scale = prepared.camera.scale;
-        let lit = !scene.lights.is_empty();
-        prepared.world = lit.then(|| World::new(scene, scale, view.screen_tolerance));
+        prepared.world = lit.then(|| {
+            World::new(
+                scene,
+                scale,
+                view.screen_tolerance,
+                Arc::clone(&groups),
+                &hidden,
+            )
+        });
+        prepared.groups = groups;
+        prepared.hidden = Arc::new(hidden);
         prepared
     }
 
@@ -118,50 +137,58 @@ impl<R: Real> Prepared<R> {
         before: &Prepared<S>,
         laters: &Laters,
     ) -> Self {
-        let prepared = Self::of(scene, view, laters.primary.is_none());
+        let prepared = Self::of(scene, view, laters.primary.is_none(), &before.hidden);
         let world = before.world.as_ref().map(|world| {
             let scale = prepared.camera.scale;
             let later = laters.world.as_ref();
-            World::again(scene, scale, view.screen_tolerance, world, later)
+            let hidden = &before.hidden;
+            World::again(scene, scale, view.screen_tolerance, world, hidden, later)
         });
         Self {
             tiles: before.tiles.clone(),
             later: laters.primary.clone(),
             materials: Arc::clone(&before.materials),
             is_plane: Arc::clone(&before.is_plane),
+            groups: Arc::clone(&before.groups),
+            hidden: Arc::clone(&before.hidden),
             world,
             ..prepared
         }
     }
 
     /// The scene without tiles, world and tables; spheres in file order if they are wanted.
-    fn of(scene: &Scene, view: View, with_spheres: bool) -> Self {
+    fn of(scene: &Scene, view: View, with_spheres: bool, hidden: &[bool]) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
         let mut surfaces = Vec::with_capacity(scene.objects.len());
         for (index, object) in scene.objects.iter().enumerate() {
-            if let Shape::Plane {
-                normal,
-                point,
-                extent,
-            } = object.shape
-            {
-                planes.extend(Plane::new(
-                    &scene.camera,
-                    view,
-                    index,
+            surfaces.push(Surface::new(scene, object));
+            let (
+                false,
+                &Shape::Plane {
                     normal,
                     point,
-                    extent.as_ref(),
-                ));
-            }
-            surfaces.push(Surface::new(scene, object));
+                    extent,
+                },
+            ) = (hidden[index], &object.shape)
+            else {
+                continue;
+            };
+            let camera = &scene.camera;
+            planes.extend(Plane::new(
+                camera,
+                view,
+                index,
+                normal,
+                point,
+                extent.as_ref(),
+            ));
         }
         let sphere = |(index, object): (usize, &Object)| match object.shape {
-            Shape::Sphere { center, radius } => {
+            Shape::Sphere { center, radius } if !hidden[index] => {
                 Sphere::new(scene.camera.viewpoint, &camera, index, center, radius)
             }
-            Shape::Plane { .. } => None,
+            _ => None,
         };
         let objects = &scene.objects;
         let spheres = if !with_spheres {
@@ -191,6 +218,8 @@ impl<R: Real> Prepared<R> {
             surfaces,
             materials: Arc::default(),
             is_plane: Arc::default(),
+            groups: Arc::default(),
+            hidden: Arc::default(),
             any_clear,
             palette,
             textures,

@@ -19,9 +19,9 @@ use crate::scene::{Scene, Shape};
 /// Everything that a ray from anywhere can meet, and the lights.
 #[derive(Debug, Clone)]
 pub struct World<R> {
-    /// All planes, in file order.
+    /// All planes that a ray can hit, in file order.
     pub planes: Vec<WorldPlane<R>>,
-    /// All spheres: those of the tree in its order, then the others in file order.
+    /// All spheres that a ray can hit: those of the tree in its order, then the others in file order.
     pub spheres: Vec<WorldSphere<R>>,
     /// The tree over the spheres, if they are many.
     pub bvh: Option<Arc<Bvh>>,
@@ -32,7 +32,7 @@ pub struct World<R> {
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
     /// equal spheres: from one of them the other is at t = 0, a miss.
     pub groups: Arc<Vec<u32>>,
-    /// For each object: its place in `planes` or `spheres`.
+    /// For each object that a ray can hit: its place in `planes` or `spheres`.
     pub places: Arc<Vec<usize>>,
     /// The rule H.z ≤ τ for positions.
     pub highest: R,
@@ -77,9 +77,15 @@ pub struct WorldSphere<R> {
 
 impl<R: Real> World<R> {
     /// Prepares a lit scene.
-    pub fn new(scene: &Scene, scale: i32, screen_tolerance: f64) -> Self {
-        let groups = Arc::new(groups(scene, true));
-        let mut world = Self::of(scene, scale, screen_tolerance, groups, Arc::default(), true);
+    pub(super) fn new(
+        scene: &Scene,
+        scale: i32,
+        screen_tolerance: f64,
+        groups: Arc<Vec<u32>>,
+        hidden: &[bool],
+    ) -> Self {
+        let places = Arc::default();
+        let mut world = Self::of(scene, scale, screen_tolerance, groups, places, hidden, true);
         world.bvh = bvh::build(&mut world.spheres).map(Arc::new);
         let mut places = vec![0; scene.objects.len()];
         for (place, plane) in world.planes.iter().enumerate() {
@@ -98,6 +104,7 @@ impl<R: Real> World<R> {
         scale: i32,
         screen_tolerance: f64,
         before: &World<S>,
+        hidden: &[bool],
         later: Option<&Later>,
     ) -> Self {
         let (groups, places) = (Arc::clone(&before.groups), Arc::clone(&before.places));
@@ -110,6 +117,7 @@ impl<R: Real> World<R> {
                 screen_tolerance,
                 groups,
                 places,
+                hidden,
                 later.is_none(),
             )
         }
@@ -122,6 +130,7 @@ impl<R: Real> World<R> {
         screen_tolerance: f64,
         groups: Arc<Vec<u32>>,
         places: Arc<Vec<usize>>,
+        hidden: &[bool],
         spheres: bool,
     ) -> Self {
         let view = V3::exact(scene.camera.viewpoint);
@@ -145,6 +154,7 @@ impl<R: Real> World<R> {
         };
         for (object, entity) in scene.objects.iter().enumerate() {
             match entity.shape {
+                _ if hidden[object] => {}
                 Shape::Plane {
                     normal,
                     point,

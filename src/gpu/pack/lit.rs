@@ -1,6 +1,5 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
-use super::shared::Surfaces;
 use super::{Light, LitObject, Material, Packed, WorldPlane, WorldSphere, f32x3};
 use crate::gpu::bounds::{U, most, up};
 use crate::prepare::{self, Prepared, World, world};
@@ -35,32 +34,15 @@ pub struct Lit {
 const SPHERE_BIT: u32 = 1 << 31;
 
 impl Lit {
-    pub(super) fn new(
-        scene: &Prepared<Bounded>,
-        world: &World<Bounded>,
-        packed: &Packed,
-        surfaces: &Surfaces,
-    ) -> Self {
+    pub(super) fn new(scene: &Prepared<Bounded>, world: &World<Bounded>, packed: &Packed) -> Self {
         let used = || scene.materials.iter().map(|&index| &scene.palette[index]);
-        // The tree's spheres are all there: its leaves count on it.
         let in_tree = world.bvh.as_ref().map_or(0, |bvh| bvh.len);
-        let planes: Vec<_> = world
-            .planes
-            .iter()
-            .filter(|p| !surfaces.hidden[p.object])
-            .collect();
-        let spheres: Vec<_> = world
-            .spheres
-            .iter()
-            .enumerate()
-            .filter(|(place, s)| *place < in_tree || !surfaces.hidden[s.object])
-            .map(|(_, sphere)| sphere)
-            .collect();
+        let (planes, spheres) = (&world.planes, &world.spheres);
         let mut places = vec![0; scene.surfaces.len()];
-        for (place, plane) in (0..).zip(&planes) {
+        for (place, plane) in (0..).zip(planes) {
             places[plane.object] = place;
         }
-        for (place, sphere) in (0..).zip(&spheres) {
+        for (place, sphere) in (0..).zip(spheres) {
             places[sphere.object] = place | SPHERE_BIT;
         }
         let levels = planes

@@ -131,7 +131,7 @@ impl Packed {
         };
         let screen = &screen;
         let tree = prepared.world.as_ref().and_then(|world| world.bvh.as_ref());
-        let surfaces = Surfaces::new(scene, prepared, tolerance);
+        let surfaces = Surfaces::new(prepared);
         let mut packed = Self {
             camera: camera(&prepared.camera, screen),
             scale: prepared.camera.scale,
@@ -156,7 +156,7 @@ impl Packed {
             pplanes: Vec::new(),
             texplanes: Vec::new(),
             texels: Vec::new(),
-            tables: Tables::new(scene, prepared, &surfaces, settings),
+            tables: Tables::new(scene, prepared, settings),
             lit: None,
             dark: 0.0,
             tree_size: 0.0,
@@ -187,7 +187,7 @@ impl Packed {
         packed.lit = prepared
             .world
             .as_ref()
-            .map(|world| Lit::new(prepared, world, &packed, &surfaces));
+            .map(|world| Lit::new(prepared, world, &packed));
         packed.dark = packed.darkness();
         packed.tree_size = up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
         packed.unprovable = packed.doubtful_numbers();
@@ -196,7 +196,7 @@ impl Packed {
 
     /// What primary rays can hit.
     fn pack_primary(&mut self, scene: &Prepared<Bounded>, surfaces: &Surfaces, screen: &Screen) {
-        for plane in scene.planes.iter().filter(|p| !surfaces.hidden[p.object]) {
+        for plane in &scene.planes {
             let group = surfaces.shared(plane.object);
             match &plane.sides {
                 None => self
@@ -211,17 +211,9 @@ impl Packed {
                 )),
             }
         }
-        // The tiles' spheres are all there: their lists count on it.
-        let spheres: Vec<_> = match &scene.tiles {
-            Some(_) => scene.spheres.iter().collect(),
-            None => scene
-                .spheres
-                .iter()
-                .filter(|s| !surfaces.hidden[s.object])
-                .collect(),
-        };
         let most = |place: usize| scene.tiles.as_ref().map_or(0.0, |tiles| tiles.most[place]);
-        self.spheres = spheres
+        self.spheres = scene
+            .spheres
             .par_iter()
             .enumerate()
             .map(|(place, sphere)| primary::sphere(&scene.camera, sphere, screen, most(place)))
@@ -230,7 +222,8 @@ impl Packed {
         let psphere =
             |surface: &prepare::Surface<Bounded>| matches!(surface, prepare::Surface::Psphere(_));
         if scene.world.is_some() || scene.surfaces.iter().any(psphere) {
-            self.sphere_points = spheres
+            self.sphere_points = scene
+                .spheres
                 .par_iter()
                 .map(|sphere| primary::sphere_hit(&scene.camera, sphere, screen))
                 .collect();

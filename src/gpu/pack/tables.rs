@@ -3,7 +3,6 @@
 
 use dashu_int::IBig;
 
-use super::shared::Surfaces;
 use crate::gpu::compose::pplane_asks;
 use crate::prepare::exact::parity;
 use crate::prepare::index::{Index, indices};
@@ -35,12 +34,7 @@ const MOST_TEXELS: u32 = 0x7fff;
 impl Tables {
     /// The tables of the planes that a primary ray can hit; none where pixels are not certified, or rays pass beside their
     /// middles.
-    pub(super) fn new(
-        scene: &Scene,
-        prepared: &Prepared<Bounded>,
-        surfaces: &Surfaces,
-        settings: &Settings,
-    ) -> Self {
+    pub(super) fn new(scene: &Scene, prepared: &Prepared<Bounded>, settings: &Settings) -> Self {
         let mut tables = Self::default();
         if settings.precision != Precision::Certified || settings.values || settings.samples > 1 {
             return tables;
@@ -49,7 +43,7 @@ impl Tables {
         let room = pixels[0] as usize + pixels[1] as usize;
         for plane in &prepared.planes {
             let object = plane.object;
-            if surfaces.hidden[object] || tables.words.len() + room > MOST + scene.objects.len() {
+            if tables.words.len() + room > MOST + scene.objects.len() {
                 continue;
             }
             let Some(entries) = entries(scene, object, &prepared.surfaces[object]) else {
