@@ -116,7 +116,7 @@ fn certain(clear: vec3f) {
 
 // What the host knows of the indices at the hit of a pixel's own ray, from the pixel's column and row: 0 where that is
 // nothing. src/gpu/pack/tables.rs says which bit means what. (The tables are in the buffer of the objects, in the field
-// `kind`, as some drivers allow only ten buffers.)
+// `kind`, as some drivers allow only ten buffers. Asked only where an index is not certain by itself: loads cost more.)
 fn told(point: Point) -> u32 {
     let first = objects[TABLES + point.object].kind;
     let there = point.direct & (first != 0u);
@@ -160,9 +160,11 @@ fn tplane_foreground(plane: Tiled, point: Point) -> bool {
     var clear = abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors); //~
     var whole = floor3(vec3f(index, plane.parity + 0.5));
 //#if tables
-    let word = told(point);
-    clear = select(clear, vec2f(1.0), told_known(word).xy);
-    whole = select(whole, told_odd(word), told_known(word));
+    if !all(clear > vec2f(0.0)) {
+        let word = told(point);
+        clear = select(clear, vec2f(1.0), told_known(word).xy);
+        whole = select(whole, told_odd(word), told_known(word));
+    }
 //#end
     certain(vec3f(clear, 1.0)); //~
     let odd = odd3(whole);
@@ -201,9 +203,11 @@ fn pplane_odd(at: PlanePoint, axes: vec3f) -> vec3f {
 //#if certified
     var clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
 //#if tables
-    let word = told(at.point);
-    clear = select(clear, vec3f(1.0), told_known(word));
-    whole = select(whole, told_odd(word), told_known(word));
+    if !all(clear > vec3f(0.0)) {
+        let word = told(at.point);
+        clear = select(clear, vec3f(1.0), told_known(word));
+        whole = select(whole, told_odd(word), told_known(word));
+    }
 //#end
     certain(select(vec3f(1.0), clear, axes > vec3f(0.0)));
 //#end
@@ -246,18 +250,18 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
     let position = point.position;
     var index = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
     let size = vec2f(plane.size);
-//#if tables
-    let word = told(point);
-    let known = (vec2u(word) & vec2u(0x8000u, 0x80000000u)) != vec2u(0u);
-    index = select(index, vec2f((vec2u(word) >> vec2u(0u, 16u)) & vec2u(0x7fffu)) + 0.5, known);
-//#end
 //#if certified
     // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
     let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u) | any(size < vec2f(2.0)));
     let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)), select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
     var clear = abs(index - edge) - (plane.spread * index_error(point) + plane.errors) + lone;
 //#if tables
-    clear = select(clear, vec2f(1.0), known);
+    if !all(clear > vec2f(0.0)) {
+        let word = told(point);
+        let known = (vec2u(word) & vec2u(0x8000u, 0x80000000u)) != vec2u(0u);
+        index = select(index, vec2f((vec2u(word) >> vec2u(0u, 16u)) & vec2u(0x7fffu)) + 0.5, known);
+        clear = select(clear, vec2f(1.0), known);
+    }
 //#end
     certain(vec3f(clear, 1048576.0 - max(abs(index.x), abs(index.y))));
 //#end
