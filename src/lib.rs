@@ -14,6 +14,7 @@
 //!
 //! [`render::render`] runs the whole of it; `src/cli/` only turns arguments into such calls.
 
+pub mod bench;
 pub mod certify;
 pub mod cpu;
 pub mod diagnostic;

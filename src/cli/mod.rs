@@ -4,6 +4,7 @@
 //! library and says what came out. Data goes to stdout, talk to stderr (`say`).
 
 mod args;
+mod bench;
 mod cache;
 mod check;
 mod compare;
@@ -66,6 +67,8 @@ EXAMPLES
   plumb probe scene.txt 100 40          why a pixel is what it is (y upwards)
   plumb compare a.ppm b.png             are they the same, and if not, where?
   plumb doctor                          which GPU would be used, and why
+  plumb bench scene.txt --plot out.svg  what each way to render it costs, in time
+                                        and in error
 
 THE SCENE LANGUAGE
   A scene is a list of blocks, each a type, a name and attributes; # starts a
@@ -134,6 +137,8 @@ enum Command {
     Probe(probe::Args),
     /// Compare two pictures; exit 1 if they differ
     Compare(compare::Args),
+    /// Measure every way to render scenes: the error against the time
+    Bench(bench::Args),
     /// List the GPU adapters, and which one would be used and why
     Doctor(doctor::Args),
     /// Print a completion script for a shell
@@ -173,6 +178,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Dump(args)) => dump::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Doctor(args)) => doctor::run(&args),
         Some(Command::Completions(args)) => completions::run(&args),
     };

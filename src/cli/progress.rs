@@ -1,4 +1,4 @@
-//! A bar on stderr for renderings that take a while, where somebody may be watching.
+//! A bar on stderr for work that takes a while, where somebody may be watching.
 
 use std::io::{self, IsTerminal};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,7 +17,7 @@ pub(crate) fn is_shown() -> bool {
     SHOWN.load(Ordering::Relaxed)
 }
 
-/// Rows done, of all rows.
+/// Steps done, of all: rows of a picture, or whatever the work has.
 pub(crate) struct Progress {
     bar: ProgressBar,
     /// When to begin to show it; None once it is shown, or if it never will be.
@@ -25,9 +25,9 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Of so many rows; shown if it is `wanted` and stderr is a terminal.
-    pub(crate) fn new(rows: u64, wanted: bool) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::hidden());
+    /// Of so many steps; shown if it is `wanted` and stderr is a terminal.
+    pub(crate) fn new(steps: u64, wanted: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %, {eta} left") {
             bar.set_style(style);
         }
@@ -38,9 +38,9 @@ impl Progress {
         }
     }
 
-    /// So many rows more are done.
-    pub(crate) fn add(&mut self, rows: u64) {
-        self.bar.inc(rows);
+    /// So many steps more are done.
+    pub(crate) fn add(&mut self, steps: u64) {
+        self.bar.inc(steps);
         if self.pending.is_some_and(|when| Instant::now() >= when) {
             self.pending = None;
             SHOWN.store(true, Ordering::Relaxed);

@@ -358,7 +358,7 @@ fn unrolled_world(
 }
 
 /// Copies the lines of `file` that the features ask for.
-fn preprocess(
+pub(crate) fn preprocess(
     file: &str,
     names: &BTreeSet<&str>,
     insert: &dyn Fn(&str) -> String,

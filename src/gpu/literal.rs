@@ -100,7 +100,7 @@ pub fn literal(value: f32) -> String {
     }
 }
 
-pub(super) fn vector(values: &[f32]) -> String {
+pub(crate) fn vector(values: &[f32]) -> String {
     let list: Vec<String> = values.iter().map(|v| literal(*v)).collect();
     format!("vec{}f({})", values.len(), list.join(", "))
 }

@@ -18,6 +18,7 @@
 //! pictures with the same hash have the same size and the same bytes, and `sha256sum picture.ppm` tells it too.
 
 pub mod compare;
+mod document;
 mod error;
 pub mod exr;
 mod output;
@@ -31,6 +32,7 @@ use std::fmt;
 use std::path::Path;
 
 pub use compare::{Comparison, SizesDiffer, compare, difference};
+pub use document::Document;
 pub use error::OutputError;
 pub use output::{Finished, HASH_KEY, Metadata, Output};
 pub use read::{Picture, ReadError, read};

@@ -1,0 +1,65 @@
+//! What primary rays meet on the GPU, and how far away: the shaders of pictures, with another entry point.
+//!
+//! Every function of theirs is as it is where a picture is rendered; nothing in `shaders/` is there for this.
+
+use super::dispatch::{Runner, words};
+use super::truth::{Met, Seen};
+use crate::gpu::GpuError;
+use crate::gpu::compose::compose;
+use crate::gpu::device::Gpu;
+use crate::gpu::features::FeatureSet;
+use crate::gpu::pack::Packed;
+use crate::gpu::pipeline::Pipeline;
+use crate::prepare::exact::two_to;
+use crate::settings::Settings;
+
+/// Most rows of a dispatch.
+const ROWS: usize = 16;
+
+const FIRST_HIT: &str = include_str!("first_hit.wgsl");
+
+/// What the pixels of these rows see, row by row, from the left.
+///
+/// # Errors
+/// As any rendering on the GPU.
+pub fn hits(
+    gpu: &Gpu,
+    packed: &Packed,
+    settings: &Settings,
+    width: u32,
+    rows: &[u32],
+) -> Result<Vec<Seen>, GpuError> {
+    let mut features = FeatureSet::new(packed, settings, gpu.lanes);
+    let nothing = Seen {
+        object: Met::Nothing,
+        t: 0.0,
+    };
+    if !features.any_object() {
+        return Ok(vec![nothing; rows.len() * width as usize]);
+    }
+    // Four words a pixel; the bounds of certified pixels stay.
+    features.values = true;
+    let wgsl = compose(packed, &features);
+    let before = wgsl.split("@compute").next().unwrap_or_default();
+    let wgsl = [before, FIRST_HIT].concat();
+    let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
+    let bind = |job: &_, pixels: &_| pipeline.bind(gpu, job, pixels, None);
+    let runner = Runner::new(gpu, &pipeline.pipeline, 16, width, bind);
+    let unit = two_to(packed.scale);
+    let mut seen = Vec::with_capacity(rows.len() * width as usize);
+    for together in rows.chunk_by(|a, b| a + 1 == *b) {
+        for rows in together.chunks(ROWS) {
+            let [first, last] = [rows[0], rows[rows.len() - 1]];
+            runner.rows(first..last + 1, |bytes| {
+                // The top row comes first.
+                let words = words(bytes);
+                let lines = words.chunks(width as usize).rev();
+                seen.extend(lines.flatten().map(|&[t, object, ..]| Seen {
+                    object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
+                    t: f64::from(f32::from_bits(t)) * unit,
+                }));
+            })?;
+        }
+    }
+    Ok(seen)
+}

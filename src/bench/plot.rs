@@ -1,0 +1,430 @@
+//! The report as a picture: time across, error up, a panel a scene, a point a way, and the front that nothing beats. Told apart
+//! by shape and fill, so that black and white will do.
+
+use super::statistics::pareto;
+use super::svg::{Anchor, Svg};
+use super::table::short;
+use super::ways::Way;
+use super::{Report, SceneReport};
+
+/// A panel with its titles and axes.
+const PANEL: (f64, f64) = (470.0, 370.0);
+/// Around the plotted rectangle: left, top, right, bottom.
+const MARGIN: [f64; 4] = [66.0, 34.0, 14.0, 50.0];
+/// Above and below all panels.
+const HEAD: f64 = 56.0;
+const FOOT: f64 = 58.0;
+/// Height of the strip for pictures without a wrong pixel.
+const FLOOR: f64 = 38.0;
+/// Half a marker, and half a line of text.
+const MARK: f64 = 5.0;
+const LINE: f64 = 7.0;
+/// About the width of a character.
+const LETTER: f64 = 6.4;
+
+/// Draws the report.
+#[must_use]
+pub fn plot(report: &Report) -> String {
+    let count = report.scenes.len();
+    let columns = match count {
+        0 | 1 => 1,
+        2..=4 => 2,
+        _ => 3,
+    };
+    let rows = count.div_ceil(columns).max(1);
+    let width = (columns as f64 * PANEL.0).max(620.0);
+    let height = HEAD + rows as f64 * PANEL.1 + FOOT;
+    let mut svg = Svg::default();
+    let machine = &report.machine;
+    let gpu = match (&machine.adapter, &machine.driver) {
+        (Some(adapter), Some(driver)) => format!("{adapter}, {driver}"),
+        (Some(adapter), None) => adapter.clone(),
+        (None, _) => "no GPU".to_owned(),
+    };
+    let cpu = format!("CPU: {}, {} threads", machine.cpu, machine.threads);
+    svg.text(
+        (14.0, 22.0),
+        Anchor::Start,
+        "font-size='15' font-weight='bold'",
+        "Error against time",
+    );
+    svg.text((14.0, 39.0), Anchor::Start, "", &format!("GPU: {gpu}"));
+    svg.text((14.0, 53.0), Anchor::Start, "", &cpu);
+    for (i, scene) in report.scenes.iter().enumerate() {
+        let origin = (
+            (i % columns) as f64 * PANEL.0,
+            HEAD + (i / columns) as f64 * PANEL.1,
+        );
+        panel(&mut svg, origin, scene);
+    }
+    let foot = height - FOOT + 14.0;
+    svg.line(&[(14.0, foot - 4.0), (44.0, foot - 4.0)], FRONT);
+    let front = "the front: no way is both faster and nearer to the truth";
+    svg.text((50.0, foot), Anchor::Start, "", front);
+    let whiskers = format!(
+        "whiskers: the fastest and the slowest of {} runs; a frame is from the scene to its bytes, compiling included",
+        report.repeat
+    );
+    svg.text((14.0, foot + 16.0), Anchor::Start, "", &whiskers);
+    let left_out: Vec<String> = report.scenes.iter().flat_map(left_out).collect();
+    let last = match left_out.as_slice() {
+        [] => report.software.clone(),
+        some => format!("{}; not available: {}", report.software, some.join(", ")),
+    };
+    svg.text((14.0, foot + 32.0), Anchor::Start, "", &last);
+    svg.finish(width, height, "Error against time")
+}
+
+const FRONT: &str = "stroke='#555' stroke-width='1.5' stroke-dasharray='6 3'";
+
+/// Ways that have no point.
+fn left_out(scene: &SceneReport) -> Vec<String> {
+    let missing = scene.ways.iter().filter(|way| way.not_available.is_some());
+    missing
+        .map(|way| format!("{} ({})", way.name, scene.scene))
+        .collect()
+}
+
+/// A way's place: time in ms with its spread, wrong pixels in percent.
+struct Point {
+    way: Way,
+    ms: f64,
+    spread: [f64; 2],
+    error: f64,
+}
+
+fn points(scene: &SceneReport) -> Vec<Point> {
+    let point = |way: &super::WayReport| {
+        let frame = &way.seconds.as_ref()?.frame;
+        Some(Point {
+            way: way.way,
+            ms: 1e3 * frame.median,
+            spread: [1e3 * frame.min, 1e3 * frame.max],
+            error: way.error.as_ref()?.wrong_percent,
+        })
+    };
+    scene.ways.iter().filter_map(point).collect()
+}
+
+/// How values become places in a panel.
+#[derive(Debug)]
+struct Axes {
+    /// Left, top, right, bottom of what is plotted, the strip for no error included.
+    frame: [f64; 4],
+    /// Powers of ten at both ends: of ms, and of percent.
+    time: [f64; 2],
+    error: [f64; 2],
+}
+
+impl Axes {
+    fn new((x, y): (f64, f64), scene: &SceneReport, points: &[Point]) -> Self {
+        let [left, top, right, bottom] = MARGIN;
+        let times = || points.iter().flat_map(|p| p.spread).filter(|t| *t > 0.0);
+        let least = times().fold(f64::INFINITY, f64::min).log10() - 0.15;
+        let most = times().fold(0.0, f64::max).log10() + 0.15;
+        let time = if least.is_finite() && most.is_finite() {
+            // At least a decade, or small differences look large.
+            let missing = (1.0 - (most - least)).max(0.0) / 2.0;
+            [least - missing, most + missing]
+        } else {
+            [0.0, 1.0]
+        };
+        let pixel = (100.0 / scene.pixels().max(1) as f64).log10().floor();
+        Self {
+            frame: [x + left, y + top, x + PANEL.0 - right, y + PANEL.1 - bottom],
+            time,
+            // From a pixel to all of them.
+            error: [pixel.min(1.0), 2.0],
+        }
+    }
+
+    fn x(&self, ms: f64) -> f64 {
+        let [left, _, right, _] = self.frame;
+        let [from, to] = self.time;
+        let share = (ms.max(1e-9).log10() - from) / (to - from);
+        left + share.clamp(0.0, 1.0) * (right - left)
+    }
+
+    fn y(&self, percent: f64) -> f64 {
+        let [_, top, _, bottom] = self.frame;
+        if percent <= 0.0 {
+            return bottom - FLOOR / 2.0;
+        }
+        let [from, to] = self.error;
+        let share = (percent.log10() - from) / (to - from);
+        let lowest = bottom - FLOOR - 8.0;
+        lowest - share.clamp(0.0, 1.0) * (lowest - top - 8.0)
+    }
+}
+
+fn panel(svg: &mut Svg, origin: (f64, f64), scene: &SceneReport) {
+    let points = points(scene);
+    let axes = Axes::new(origin, scene, &points);
+    draw_axes(svg, &axes, scene);
+    let places: Vec<(f64, f64)> = points
+        .iter()
+        .map(|p| (axes.x(p.ms), axes.y(p.error)))
+        .collect();
+    let beaten: Vec<(f64, f64)> = points.iter().map(|p| (p.ms, p.error)).collect();
+    let front = pareto(&beaten);
+    let [_, top, right, _] = axes.frame;
+    if let (Some(first), Some(last)) = (front.first(), front.last()) {
+        let mut stairs = vec![(places[*first].0, top)];
+        for &i in &front {
+            let (x, y) = places[i];
+            stairs.push((x, stairs[stairs.len() - 1].1));
+            stairs.push((x, y));
+        }
+        stairs.push((right, places[*last].1));
+        svg.line(&stairs, FRONT);
+    }
+    for (point, &(x, y)) in points.iter().zip(&places) {
+        let [from, to] = point.spread.map(|ms| axes.x(ms));
+        svg.line(&[(from, y), (to, y)], "stroke='black' stroke-width='0.8'");
+        for end in [from, to] {
+            svg.line(
+                &[(end, y - 3.0), (end, y + 3.0)],
+                "stroke='black' stroke-width='0.8'",
+            );
+        }
+        mark(svg, point.way, (x, y));
+    }
+    let texts: Vec<String> = points
+        .iter()
+        .map(|p| format!("{}, {} ms", p.way.name(), short(p.ms)))
+        .collect();
+    for ((text, label), &(x, y)) in texts
+        .iter()
+        .zip(labels(&texts, &places, axes.frame))
+        .zip(&places)
+    {
+        let [left, top, right, bottom] = label;
+        if top > y + MARK || bottom < y - MARK || left > x + 3.0 * MARK || right < x - 3.0 * MARK {
+            let near = (x.clamp(left, right), y.clamp(top + 2.0, bottom - 2.0));
+            svg.line(&[(x, y), near], "stroke='#888' stroke-width='0.6'");
+        }
+        svg.rectangle(
+            [left, top, right - left, bottom - top],
+            "fill='white' fill-opacity='0.75'",
+        );
+        svg.text((left + 2.0, bottom - 3.0), Anchor::Start, "", text);
+    }
+}
+
+fn draw_axes(svg: &mut Svg, axes: &Axes, scene: &SceneReport) {
+    let [left, top, right, bottom] = axes.frame;
+    let middle = (left + right) / 2.0;
+    let title = format!("{}, {}×{}", scene.scene, scene.width, scene.height);
+    svg.text(
+        (middle, top - 10.0),
+        Anchor::Middle,
+        "font-weight='bold'",
+        &title,
+    );
+    let strip = [left, bottom - FLOOR, right - left, FLOOR];
+    svg.rectangle(strip, "fill='url(#hatch)' stroke='#999' stroke-width='0.6'");
+    svg.text(
+        (left - 6.0, bottom - FLOOR / 2.0 + 4.0),
+        Anchor::End,
+        "font-weight='bold'",
+        "none",
+    );
+    let grid = "stroke='#ddd' stroke-width='0.6'";
+    for power in axes.error[0] as i32..=axes.error[1] as i32 {
+        let percent = 10f64.powi(power);
+        let y = axes.y(percent);
+        svg.line(&[(left, y), (right, y)], grid);
+        let text = if power < -3 {
+            format!("1e{power} %")
+        } else {
+            format!("{percent} %")
+        };
+        svg.text((left - 6.0, y + 4.0), Anchor::End, "", &text);
+    }
+    let [from, to] = axes.time;
+    for power in from.floor() as i32..=to.ceil() as i32 {
+        for step in [1.0, 2.0, 5.0] {
+            let ms = step * 10f64.powi(power);
+            if !(from..=to).contains(&ms.log10()) {
+                continue;
+            }
+            let x = axes.x(ms);
+            svg.line(&[(x, top), (x, bottom)], grid);
+            // Over many decades only the powers of ten have room.
+            if step == 1.0 || to - from < 3.0 {
+                let text = format!("{}", (ms * 1e9).round() / 1e9);
+                svg.text((x, bottom + 14.0), Anchor::Middle, "", &text);
+            }
+        }
+    }
+    let frame = [left, top, right - left, bottom - top];
+    svg.rectangle(frame, "fill='none' stroke='black' stroke-width='0.8'");
+    let across = "time of a frame, ms (log)";
+    svg.text((middle, bottom + 32.0), Anchor::Middle, "", across);
+    let (x, y) = (left - 52.0, (top + bottom) / 2.0);
+    let turned = format!("transform='rotate(-90 {x:.1} {y:.1})'");
+    svg.text((x, y), Anchor::Middle, &turned, "wrong pixels (log)");
+}
+
+/// A way's marker.
+fn mark(svg: &mut Svg, way: Way, (x, y): (f64, f64)) {
+    let black = "fill='black' stroke='black' stroke-width='1.4'";
+    let white = "fill='white' stroke='black' stroke-width='1.4'";
+    let square = [x - MARK, y - MARK, 2.0 * MARK, 2.0 * MARK];
+    let m = MARK;
+    let circle = format!(
+        "M{:.1},{y:.1} a{m},{m} 0 1 0 {:.1},0 a{m},{m} 0 1 0 {:.1},0 z",
+        x - m,
+        2.0 * m,
+        -2.0 * m
+    );
+    match way {
+        Way::GpuCertified => svg.rectangle(square, black),
+        Way::GpuFast => svg.rectangle(square, white),
+        Way::CpuCertified => svg.path(&circle, black),
+        Way::CpuPlain => svg.path(&circle, white),
+        Way::F32Quadratic => {
+            let triangle = format!(
+                "M{x:.1},{:.1} l{m:.1},{:.1} h{:.1} z",
+                y - 1.2 * m,
+                2.2 * m,
+                -2.0 * m
+            );
+            svg.path(&triangle, white);
+        }
+        Way::F32Naive => {
+            let (a, b, c, d) = (x - m, x + m, y - m, y + m);
+            let cross = format!("M{a:.1},{c:.1} L{b:.1},{d:.1} M{a:.1},{d:.1} L{b:.1},{c:.1}");
+            svg.path(&cross, "fill='none' stroke='black' stroke-width='2'");
+        }
+    }
+}
+
+/// Where the labels of points stand (left, top, right, bottom): the first place around its point where a label covers neither
+/// another one nor a marker, or else one that covers no label.
+fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -> Vec<[f64; 4]> {
+    let marks: Vec<[f64; 4]> = places
+        .iter()
+        .map(|(x, y)| {
+            [
+                x - MARK - 1.0,
+                y - MARK - 1.0,
+                x + MARK + 1.0,
+                y + MARK + 1.0,
+            ]
+        })
+        .collect();
+    let overlap =
+        |a: &[f64; 4], b: &[f64; 4]| a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+    let mut taken: Vec<[f64; 4]> = Vec::new();
+    for (text, &(x, y)) in texts.iter().zip(places) {
+        let width = LETTER * text.chars().count() as f64 + 4.0;
+        let label = |dx: f64, dy: f64| {
+            // Kept inside the panel, where there is room for it.
+            let left = (x + dx).min(frame[2] - width - 1.0).max(frame[0] + 1.0);
+            let top = (y + dy - LINE)
+                .min(frame[3] - 2.0 * LINE)
+                .max(frame[1] + 1.0);
+            [left, top, left + width, top + 2.0 * LINE]
+        };
+        let around = (0..40).flat_map(|ring| {
+            let far = f64::from(ring) * 2.0 * LINE;
+            let (right, left) = (MARK + 4.0, -MARK - 4.0 - width);
+            let near = MARK + LINE + 2.0 + far;
+            [
+                (right, -far),
+                (left, -far),
+                (-width / 2.0, -near),
+                (-width / 2.0, near),
+                (right, far),
+                (left, far),
+            ]
+        });
+        let candidates: Vec<[f64; 4]> = around.map(|(dx, dy)| label(dx, dy)).collect();
+        let free = |label: &&[f64; 4]| !taken.iter().any(|other| overlap(label, other));
+        let clear =
+            |label: &&[f64; 4]| free(label) && !marks.iter().any(|mark| overlap(label, mark));
+        let chosen = candidates
+            .iter()
+            .find(clear)
+            .or_else(|| candidates.iter().find(free))
+            .unwrap_or(&candidates[0]);
+        taken.push(*chosen);
+    }
+    taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::svg::tests::well_formed;
+    use super::super::tests::report;
+    use super::*;
+
+    #[test]
+    fn the_plot_is_a_document_with_everything_in_it() {
+        let report = report();
+        let text = plot(&report);
+        assert!(well_formed(&text).unwrap() > 60);
+        for word in [
+            "room.txt, 40×30",
+            "GPU: Card, Driver 1",
+            "GPU certified, 2.00 ms",
+            "f32 naive, 1.00 ms",
+            "time of a frame, ms (log)",
+            "wrong pixels (log)",
+            ">none<",
+            "not available: CPU plain f64 (room.txt)",
+        ] {
+            assert!(text.contains(word), "no {word:?} in {text}");
+        }
+        let mut several = report.clone();
+        several.scenes = vec![report.scenes[0].clone(); 5];
+        assert_eq!(plot(&several).matches("room.txt, 40×30").count(), 5);
+        several.scenes.clear();
+        assert!(well_formed(&plot(&several)).is_ok());
+    }
+
+    #[test]
+    fn labels_do_not_overlap_even_where_points_coincide() {
+        let frame = [0.0, 0.0, 400.0, 300.0];
+        let texts: Vec<String> = Way::ALL
+            .map(|way| format!("{}, 12.3 ms", way.name()))
+            .into();
+        for places in [
+            [(200.0, 150.0); 6],
+            [(0.0, 300.0); 6],
+            [(399.0, 1.0); 6],
+            [
+                (200.0, 280.0),
+                (204.0, 280.0),
+                (208.0, 280.0),
+                (390.0, 280.0),
+                (10.0, 280.0),
+                (11.0, 20.0),
+            ],
+        ] {
+            let labels = labels(&texts, &places, frame);
+            for (i, a) in labels.iter().enumerate() {
+                assert!(
+                    a[0] >= 0.0 && a[2] <= 400.0 && a[1] >= 0.0 && a[3] <= 300.0,
+                    "{a:?}"
+                );
+                for b in &labels[..i] {
+                    let apart = a[0] >= b[2] || b[0] >= a[2] || a[1] >= b[3] || b[1] >= a[3];
+                    assert!(apart, "{a:?} {b:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn more_error_is_higher_and_more_time_farther_right() {
+        let report = report();
+        let scene = &report.scenes[0];
+        let axes = Axes::new((0.0, 0.0), scene, &points(scene));
+        assert!(axes.y(0.0) > axes.y(0.1) && axes.y(0.1) > axes.y(100.0));
+        assert!(axes.x(1.0) < axes.x(2.0));
+        // One pixel of 1,200 is above the strip.
+        assert!(axes.y(100.0 / 1200.0) < axes.frame[3] - FLOOR);
+    }
+}
