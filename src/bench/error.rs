@@ -47,7 +47,7 @@ impl PictureError {
 /// How far the distances t along primary rays are from the true ones, in units in the last place of f32 at the true t.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TError {
-    /// Half are nearer than this.
+    /// Half are as near as this.
     pub median: f64,
     /// Ninety-nine in a hundred are nearer than this.
     pub percentile_99: f64,
@@ -62,19 +62,19 @@ pub struct TError {
 }
 
 impl TError {
-    /// Compares first hits with the true ones; both are of the same pixels, in the same order. None where not one is hit in
-    /// both.
+    /// Compares first hits with the true ones, of which each comes with how far its t may be off; both are of the same pixels,
+    /// in the same order. That is added to the error, which is never more than said. None where not one is hit in both.
     #[must_use]
-    pub fn new(truth: &[Seen], hits: &[Seen]) -> Option<Self> {
+    pub fn new(truth: &[(Seen, f64)], hits: &[Seen]) -> Option<Self> {
         let mut errors = Vec::new();
         let mut other_object = 0;
         let mut left_out = 0;
-        for (truth, hit) in truth.iter().zip(hits) {
+        for ((truth, off), hit) in truth.iter().zip(hits) {
             match (truth.object, hit.object) {
                 (Met::Unsure, _) | (_, Met::Unsure) => left_out += 1,
                 (Met::Nothing, Met::Nothing) => {}
                 (Met::Object(a), Met::Object(b)) if a == b => {
-                    errors.push((hit.t - truth.t).abs() / ulp(truth.t));
+                    errors.push(((hit.t - truth.t).abs() + off) / ulp(truth.t));
                 }
                 _ => other_object += 1,
             }
@@ -170,6 +170,7 @@ mod tests {
             seen(1, 1.0),
             seen(0, 4.0),
         ];
+        let truth = truth.map(|seen| (seen, 0.0));
         let error = TError::new(&truth, &hits).unwrap();
         assert_eq!(
             (error.compared, error.other_object, error.left_out),
@@ -178,5 +179,8 @@ mod tests {
         assert_eq!((error.median, error.worst), (2.0, 3.0));
         assert!(error.percentile_99 > 2.9 && error.percentile_99 < 3.0);
         assert_eq!(TError::new(&truth[3..4], &hits[3..4]), None);
+        // What is not known of the truth counts as error.
+        let unsure = truth.map(|(seen, _)| (seen, step));
+        assert_eq!(TError::new(&unsure, &hits).unwrap().worst, 4.0);
     }
 }

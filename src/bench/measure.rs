@@ -167,18 +167,11 @@ impl Subject<'_> {
             frames.push(frame.seconds);
             kernels.push(frame.report.seconds.kernel);
         }
-        // The truth about t is this way's own, and off by what its bound says at most.
-        let off: Vec<Seen> = self
-            .hits
-            .iter()
-            .map(|&(seen, error)| Seen {
-                t: seen.t + error,
-                ..seen
-            })
-            .collect();
+        // The truth about t is this way's own.
+        let hits: Vec<Seen> = self.hits.iter().map(|(seen, _)| *seen).collect();
         Ok(Measured {
             picture: warm_up.picture,
-            t: self.compared(&off),
+            t: self.compared(&hits),
             doubtful_percent: None,
             kernel: times(warm_up.report.seconds.kernel, kernels)?,
             frame: times(warm_up.seconds, frames)?,
@@ -287,8 +280,7 @@ impl Subject<'_> {
     }
 
     fn compared(&self, hits: &[Seen]) -> Option<TError> {
-        let truth: Vec<Seen> = self.hits.iter().map(|(seen, _)| *seen).collect();
-        TError::new(&truth, hits)
+        TError::new(&self.hits, hits)
     }
 
     /// Pixels that the GPU was not sure of have no distance of its own: the CPU decided them.

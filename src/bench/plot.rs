@@ -15,7 +15,7 @@ const MARGIN: [f64; 4] = [66.0, 34.0, 14.0, 50.0];
 const HEAD: f64 = 56.0;
 const FOOT: f64 = 58.0;
 /// Height of the strip for pictures without a wrong pixel.
-const FLOOR: f64 = 38.0;
+const FLOOR: f64 = 64.0;
 /// Half a marker, and half a line of text.
 const MARK: f64 = 5.0;
 const LINE: f64 = 7.0;
@@ -199,7 +199,11 @@ fn panel(svg: &mut Svg, origin: (f64, f64), scene: &SceneReport) {
         .zip(&places)
     {
         let [left, top, right, bottom] = label;
-        if top > y + MARK || bottom < y - MARK || left > x + 3.0 * MARK || right < x - 3.0 * MARK {
+        if top > y + 2.0 * LINE
+            || bottom < y - 2.0 * LINE
+            || left > x + 3.0 * MARK
+            || right < x - 3.0 * MARK
+        {
             let near = (x.clamp(left, right), y.clamp(top + 2.0, bottom - 2.0));
             svg.line(&[(x, y), near], "stroke='#888' stroke-width='0.6'");
         }
@@ -329,15 +333,16 @@ fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -> Vec<[f64;
         };
         let around = (0..40).flat_map(|ring| {
             let far = f64::from(ring) * 2.0 * LINE;
-            let (right, left) = (MARK + 4.0, -MARK - 4.0 - width);
-            let near = MARK + LINE + 2.0 + far;
+            // Beside the point and a line up or down: whiskers and the front run level with it.
+            let (right, left) = (MARK, -MARK - width);
+            let near = LINE + 4.0 + far;
             [
-                (right, -far),
-                (left, -far),
-                (-width / 2.0, -near),
-                (-width / 2.0, near),
-                (right, far),
-                (left, far),
+                (right, -near),
+                (right, near),
+                (left, -near),
+                (left, near),
+                (-width / 2.0, -near - MARK),
+                (-width / 2.0, near + MARK),
             ]
         });
         let candidates: Vec<[f64; 4]> = around.map(|(dx, dy)| label(dx, dy)).collect();

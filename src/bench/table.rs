@@ -168,7 +168,13 @@ fn aligned(
         let _ = write!(text, "  {name:<15}");
         match cells {
             Err(why) => {
-                let _ = write!(text, "not available: {why}");
+                // What drivers say may be long; JSON has all of it.
+                let why = why.lines().next().unwrap_or_default();
+                let _ = write!(
+                    text,
+                    "not available: {}",
+                    why.chars().take(68).collect::<String>()
+                );
             }
             Ok(cells) => {
                 for (cell, width) in cells.iter().zip(&widths) {

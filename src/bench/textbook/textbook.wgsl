@@ -280,21 +280,23 @@ fn shadow(hit: vec3f, dir: vec3f, distance: f32, from_object: u32) -> vec3f {
     loop {
         steps += LANES * (OBJECTS + 2u);
         if steps > STEPS_LIMIT {
-            return vec3f(-1.0);
+            break;
         }
         let blocker = find_closest_object(base, dir, last, left);
         if blocker.object == NOTHING {
-            return share;
+            break;
         }
         base += blocker.t * dir;
         left -= blocker.t;
         last = blocker.object;
         let transparency = materials[objects[last].material].transparency;
         if transparency == 0.0 {
-            return vec3f(-1.0);
+            share = vec3f(-1.0);
+            break;
         }
         share *= tint(objects[last], base) * transparency;
     }
+    return share;
 }
 
 fn light_term(light: Light, number: u32, hit: vec3f, normal: vec3f, base: vec3f) -> vec3f {
