@@ -15,6 +15,7 @@ pub mod cold;
 pub mod dispatch;
 pub mod error;
 pub mod first_hit;
+mod labels;
 pub mod machine;
 pub mod measure;
 pub mod plot;
@@ -34,7 +35,7 @@ use statistics::Times;
 use truth::Rays;
 use ways::Way;
 
-pub use scenes::{Asked, bench};
+pub use scenes::{Asked, BenchError, bench};
 
 /// What `plumb bench` found out: what `--json` prints.
 #[derive(Debug, Clone, Serialize)]

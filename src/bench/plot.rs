@@ -1,6 +1,7 @@
 //! The report as a picture: time across, error up, a panel a scene, a point a way, and the front that nothing beats. Told apart
 //! by shape and fill, so that black and white will do.
 
+use super::labels::{LINE, labels};
 use super::statistics::pareto;
 use super::svg::{Anchor, Svg};
 use super::table::short;
@@ -10,17 +11,14 @@ use super::{Report, SceneReport};
 /// A panel with its titles and axes.
 const PANEL: (f64, f64) = (470.0, 370.0);
 /// Around the plotted rectangle: left, top, right, bottom.
-const MARGIN: [f64; 4] = [66.0, 34.0, 14.0, 50.0];
+const MARGIN: [f64; 4] = [78.0, 34.0, 14.0, 50.0];
 /// Above and below all panels.
 const HEAD: f64 = 56.0;
 const FOOT: f64 = 58.0;
 /// Height of the strip for pictures without a wrong pixel.
 const FLOOR: f64 = 64.0;
-/// Half a marker, and half a line of text.
-const MARK: f64 = 5.0;
-const LINE: f64 = 7.0;
-/// About the width of a character.
-const LETTER: f64 = 6.4;
+/// Half a marker.
+pub(super) const MARK: f64 = 5.0;
 
 /// Draws the report.
 #[must_use]
@@ -265,7 +263,7 @@ fn draw_axes(svg: &mut Svg, axes: &Axes, scene: &SceneReport) {
     svg.rectangle(frame, "fill='none' stroke='black' stroke-width='0.8'");
     let across = "time of a frame, ms (log)";
     svg.text((middle, bottom + 32.0), Anchor::Middle, "", across);
-    let (x, y) = (left - 52.0, (top + bottom) / 2.0);
+    let (x, y) = (left - 62.0, (top + bottom) / 2.0);
     let turned = format!("transform='rotate(-90 {x:.1} {y:.1})'");
     svg.text((x, y), Anchor::Middle, &turned, "wrong pixels (log)");
 }
@@ -304,61 +302,6 @@ fn mark(svg: &mut Svg, way: Way, (x, y): (f64, f64)) {
     }
 }
 
-/// Where the labels of points stand (left, top, right, bottom): the first place around its point where a label covers neither
-/// another one nor a marker, or else one that covers no label.
-fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -> Vec<[f64; 4]> {
-    let marks: Vec<[f64; 4]> = places
-        .iter()
-        .map(|(x, y)| {
-            [
-                x - MARK - 1.0,
-                y - MARK - 1.0,
-                x + MARK + 1.0,
-                y + MARK + 1.0,
-            ]
-        })
-        .collect();
-    let overlap =
-        |a: &[f64; 4], b: &[f64; 4]| a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
-    let mut taken: Vec<[f64; 4]> = Vec::new();
-    for (text, &(x, y)) in texts.iter().zip(places) {
-        let width = LETTER * text.chars().count() as f64 + 4.0;
-        let label = |dx: f64, dy: f64| {
-            // Kept inside the panel, where there is room for it.
-            let left = (x + dx).min(frame[2] - width - 1.0).max(frame[0] + 1.0);
-            let top = (y + dy - LINE)
-                .min(frame[3] - 2.0 * LINE)
-                .max(frame[1] + 1.0);
-            [left, top, left + width, top + 2.0 * LINE]
-        };
-        let around = (0..40).flat_map(|ring| {
-            let far = f64::from(ring) * 2.0 * LINE;
-            // Beside the point and a line up or down: whiskers and the front run level with it.
-            let (right, left) = (MARK, -MARK - width);
-            let near = LINE + 4.0 + far;
-            [
-                (right, -near),
-                (right, near),
-                (left, -near),
-                (left, near),
-                (-width / 2.0, -near - MARK),
-                (-width / 2.0, near + MARK),
-            ]
-        });
-        let candidates: Vec<[f64; 4]> = around.map(|(dx, dy)| label(dx, dy)).collect();
-        let free = |label: &&[f64; 4]| !taken.iter().any(|other| overlap(label, other));
-        let clear =
-            |label: &&[f64; 4]| free(label) && !marks.iter().any(|mark| overlap(label, mark));
-        let chosen = candidates
-            .iter()
-            .find(clear)
-            .or_else(|| candidates.iter().find(free))
-            .unwrap_or(&candidates[0]);
-        taken.push(*chosen);
-    }
-    taken
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::svg::tests::well_formed;
@@ -387,39 +330,6 @@ mod tests {
         assert_eq!(plot(&several).matches("room.txt, 40×30").count(), 5);
         several.scenes.clear();
         assert!(well_formed(&plot(&several)).is_ok());
-    }
-
-    #[test]
-    fn labels_do_not_overlap_even_where_points_coincide() {
-        let frame = [0.0, 0.0, 400.0, 300.0];
-        let texts: Vec<String> = Way::ALL
-            .map(|way| format!("{}, 12.3 ms", way.name()))
-            .into();
-        for places in [
-            [(200.0, 150.0); 6],
-            [(0.0, 300.0); 6],
-            [(399.0, 1.0); 6],
-            [
-                (200.0, 280.0),
-                (204.0, 280.0),
-                (208.0, 280.0),
-                (390.0, 280.0),
-                (10.0, 280.0),
-                (11.0, 20.0),
-            ],
-        ] {
-            let labels = labels(&texts, &places, frame);
-            for (i, a) in labels.iter().enumerate() {
-                assert!(
-                    a[0] >= 0.0 && a[2] <= 400.0 && a[1] >= 0.0 && a[3] <= 300.0,
-                    "{a:?}"
-                );
-                for b in &labels[..i] {
-                    let apart = a[0] >= b[2] || b[0] >= a[2] || a[1] >= b[3] || b[1] >= a[3];
-                    assert!(apart, "{a:?} {b:?}");
-                }
-            }
-        }
     }
 
     #[test]

@@ -39,17 +39,31 @@ impl Asked {
     }
 }
 
+/// Why there is no report: a scene that cannot be rendered on the CPU either.
+#[derive(Debug, thiserror::Error)]
+#[error("{scene}: {source}")]
+pub struct BenchError {
+    /// What the scene is called.
+    pub scene: String,
+    /// What is wrong.
+    pub source: Unmeasured,
+}
+
 /// Measures all ways on all scenes, and calls `step` after each of [`Asked::steps`].
 ///
 /// # Errors
 /// If a scene cannot be rendered on the CPU. What the GPU cannot do is in the report.
-pub fn bench(asked: &Asked, step: &mut dyn FnMut()) -> Result<Report, Unmeasured> {
+pub fn bench(asked: &Asked, step: &mut dyn FnMut()) -> Result<Report, BenchError> {
     let opened = gpu::device::open(None);
     let gpu = opened.as_ref().map_err(ToString::to_string);
     let mut scenes = Vec::new();
     for (name, file, scene) in &asked.scenes {
         let gpu = gpu.as_ref().map(|gpu| *gpu).map_err(String::as_str);
-        scenes.push(one(asked, name, file, scene, gpu, step)?);
+        let report = one(asked, name, file, scene, gpu, step);
+        scenes.push(report.map_err(|source| BenchError {
+            scene: name.clone(),
+            source,
+        })?);
     }
     Ok(Report {
         software: asked.software.clone(),

@@ -113,7 +113,7 @@ pub(super) mod tests {
             let end = rest[start..].find('>').ok_or("a tag has no end")? + start;
             let tag = &rest[start + 1..end];
             rest = &rest[end + 1..];
-            if tag.matches('\'').count() % 2 != 0 || tag.contains('<') {
+            if !tag.matches('\'').count().is_multiple_of(2) || tag.contains('<') {
                 return Err(format!("quotes: {tag}"));
             }
             let name = tag

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
-use plumb::bench::{Asked, bench, plot, table};
+use anyhow::{Context, Result, anyhow, bail};
+use plumb::bench::measure::Unmeasured;
+use plumb::bench::{Asked, BenchError, bench, plot, table};
 use plumb::image::{Document, Target};
+use plumb::render;
 use plumb::scene::Scene;
 
 use super::progress::Progress;
@@ -101,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut progress = Progress::new(asked.steps(), true);
     let measured = bench(&asked, &mut || progress.add(1));
     progress.clear();
-    let report = measured?;
+    let report = measured.map_err(explain)?;
     if let Some(document) = document {
         document.write(plot::plot(&report).as_bytes())?;
     }
@@ -111,6 +113,18 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         say::data(&table::table(&report))?;
     }
     Ok(Answer::Yes)
+}
+
+/// The error, with what would mend it.
+fn explain(error: BenchError) -> anyhow::Error {
+    match error.source {
+        Unmeasured::Failed(render::Error::TooManyRays(_)) => {
+            anyhow!(
+                "{error}; plumb bench has neither option, and measures what has no need of them"
+            )
+        }
+        _ => anyhow!("{error}"),
+    }
 }
 
 /// A scene at its final size, with its name and its file.

@@ -39,6 +39,7 @@ fn help_teaches() {
         "dump",
         "probe",
         "compare",
+        "bench",
         "doctor",
         "completions",
     ] {

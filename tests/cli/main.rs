@@ -4,6 +4,7 @@
 
 mod bad_light;
 mod basics;
+mod bench;
 mod certified;
 mod desk;
 mod endings;
