@@ -59,10 +59,11 @@ pub fn plot(report: &Report) -> String {
     svg.line(&[(14.0, foot - 4.0), (44.0, foot - 4.0)], FRONT);
     let front = "the front: no way is both faster and nearer to the truth";
     svg.text((50.0, foot), Anchor::Start, "", front);
-    let whiskers = format!(
-        "whiskers: the fastest and the slowest of {} runs; a frame is from the scene to its bytes, compiling included",
-        report.repeat
-    );
+    let runs = match report.repeat {
+        1 => "one run".to_owned(),
+        n => format!("the median of {n} runs, whiskers the fastest and the slowest"),
+    };
+    let whiskers = format!("{runs}; a frame is from the scene to its bytes, compiling included");
     svg.text((14.0, foot + 16.0), Anchor::Start, "", &whiskers);
     let left_out: Vec<String> = report.scenes.iter().flat_map(left_out).collect();
     let last = match left_out.as_slice() {

@@ -180,7 +180,8 @@ pub fn frame(
 
 /// The shader.
 fn wgsl(scene: &Scene, settings: &Settings, lanes: u32, prepared: bool, report: bool) -> String {
-    let lit = !scene.lights.is_empty();
+    // What primary rays hit does not depend on the lights.
+    let lit = !scene.lights.is_empty() && !report;
     let names: BTreeSet<&str> = [("prepared", prepared), ("report", report), ("lit", lit)]
         .into_iter()
         .filter_map(|(name, holds)| holds.then_some(name))

@@ -1,7 +1,7 @@
 // What a careful reader of the course notes writes, in f32: formula by formula, a loop over the objects, no tricks. For the
 // report alone (`plumb bench`); no picture that anybody asked for is rendered with it.
 //
-// Two shaders are made of it. In `prepared` ones the host has taken in f64, and rounded once, what does not depend on the
+// Two shaders are made of it (and for `report`, which tells what primary rays hit, two more without lights). In `prepared` ones the host has taken in f64, and rounded once, what does not depend on the
 // ray: everything is relative to the viewpoint, normals and rows are of unit length, N·(Q − V) and where tiles begin are known.
 // In the others (`//#else`) it hands over the scene's own numbers, and the shader starts from those.
 
@@ -348,7 +348,7 @@ struct Branch {
     weight: vec3f,
 }
 
-const STACK = 24u;
+const STACK = 8u;
 var<private> stack: array<Branch, STACK>;
 //#end
 
@@ -369,14 +369,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
     var color = vec3f(0.0);
     var gave_up = false;
-    steps = OBJECTS + 2u;
-    let hit = find_closest_object(base, dir, NOTHING, FAR);
 //#if lit
     // Instead of the notes' recursion, which WGSL does not have, a stack of rays that wait.
-    var met = hit;
     var ray = Branch(base, 0.0, dir, NOTHING, vec3f(1.0));
     var waiting = 0u;
     loop {
+        steps += LANES * (OBJECTS + 2u);
+        let met = find_closest_object(ray.base, ray.dir, ray.last, FAR);
         if met.object != NOTHING {
             let object = objects[met.object];
             let at = ray.base + met.t * ray.dir;
@@ -405,16 +404,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 gave_up = true;
             }
         }
-        steps += LANES * (OBJECTS + 2u);
         gave_up = gave_up || steps > STEPS_LIMIT;
         if waiting == 0u || gave_up {
             break;
         }
         waiting -= 1u;
         ray = stack[waiting];
-        met = find_closest_object(ray.base, ray.dir, ray.last, FAR);
     }
 //#else
+    let hit = find_closest_object(base, dir, NOTHING, FAR);
     if hit.object != NOTHING {
         color = getamb(objects[hit.object], base + hit.t * dir) / hit.t;
     }
