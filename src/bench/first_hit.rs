@@ -18,6 +18,20 @@ const ROWS: usize = 16;
 
 const FIRST_HIT: &str = include_str!("first_hit.wgsl");
 
+/// The shader of a picture with the other entry point, and its features; none where there is nothing to hit.
+#[must_use]
+pub fn wgsl(packed: &Packed, settings: &Settings, lanes: u32) -> Option<(String, FeatureSet)> {
+    let mut features = FeatureSet::new(packed, settings, lanes);
+    if !features.any_object() {
+        return None;
+    }
+    // Four words a pixel; the bounds of certified pixels stay.
+    features.values = true;
+    let wgsl = compose(packed, &features);
+    let before = wgsl.split("@compute").next().unwrap_or_default();
+    Some(([before, FIRST_HIT].concat(), features))
+}
+
 /// What the pixels of these rows see, row by row, from the left.
 ///
 /// # Errors
@@ -29,19 +43,13 @@ pub fn hits(
     width: u32,
     rows: &[u32],
 ) -> Result<Vec<Seen>, GpuError> {
-    let mut features = FeatureSet::new(packed, settings, gpu.lanes);
-    let nothing = Seen {
-        object: Met::Nothing,
-        t: 0.0,
-    };
-    if !features.any_object() {
+    let Some((wgsl, features)) = wgsl(packed, settings, gpu.lanes) else {
+        let nothing = Seen {
+            object: Met::Nothing,
+            t: 0.0,
+        };
         return Ok(vec![nothing; rows.len() * width as usize]);
-    }
-    // Four words a pixel; the bounds of certified pixels stay.
-    features.values = true;
-    let wgsl = compose(packed, &features);
-    let before = wgsl.split("@compute").next().unwrap_or_default();
-    let wgsl = [before, FIRST_HIT].concat();
+    };
     let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
     let bind = |job: &_, pixels: &_| pipeline.bind(gpu, job, pixels, None);
     let runner = Runner::new(gpu, &pipeline.pipeline, 16, width, bind);

@@ -120,7 +120,7 @@ fn explain(error: BenchError) -> anyhow::Error {
     match error.source {
         Unmeasured::Failed(render::Error::TooManyRays(_)) => {
             anyhow!(
-                "{error}; plumb bench has neither option, and measures what has no need of them"
+                "{error}. plumb bench takes the limits as they are, and cannot measure this scene"
             )
         }
         _ => anyhow!("{error}"),

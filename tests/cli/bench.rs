@@ -221,7 +221,11 @@ fn a_scene_with_too_many_rays_is_named() {
             .replace("-3.25", "-1.2"),
     );
     desk.run(&["bench", "rays.txt", "--repeat", "1"])
-        .fails_with(&["rays.txt", "more than 65536 rays", "neither option"]);
+        .fails_with(&[
+            "rays.txt",
+            "more than 65536 rays",
+            "takes the limits as they are",
+        ]);
 }
 
 /// The loader is told to find no driver at all.

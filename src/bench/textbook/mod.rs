@@ -178,8 +178,15 @@ pub fn frame(
     Ok((start.elapsed().as_secs_f64(), rendered))
 }
 
-/// The shader.
-fn wgsl(scene: &Scene, settings: &Settings, lanes: u32, prepared: bool, report: bool) -> String {
+/// The shader: see [`Textbook::new`]; `lanes` as in [`Gpu::lanes`].
+#[must_use]
+pub fn wgsl(
+    scene: &Scene,
+    settings: &Settings,
+    lanes: u32,
+    prepared: bool,
+    report: bool,
+) -> String {
     // What primary rays hit does not depend on the lights.
     let lit = !scene.lights.is_empty() && !report;
     let names: BTreeSet<&str> = [("prepared", prepared), ("report", report), ("lit", lit)]
