@@ -7,6 +7,9 @@ use super::statistics::Times;
 use super::ways::Way;
 use super::{Report, SceneReport, WayReport};
 
+/// Characters of the reason why there is nothing to say of a way.
+const WHY: usize = 67;
+
 /// The report for people.
 #[must_use]
 pub fn table(report: &Report) -> String {
@@ -169,12 +172,10 @@ fn aligned(
         match cells {
             Err(why) => {
                 // What drivers say may be long; JSON has all of it.
-                let why = why.lines().next().unwrap_or_default();
-                let _ = write!(
-                    text,
-                    "not available: {}",
-                    why.chars().take(68).collect::<String>()
-                );
+                let first = why.lines().next().unwrap_or_default();
+                let cut: String = first.chars().take(WHY).collect();
+                let more = if cut.len() < why.len() { "…" } else { "" };
+                let _ = write!(text, "not available: {cut}{more}");
             }
             Ok(cells) => {
                 for (cell, width) in cells.iter().zip(&widths) {
@@ -238,7 +239,10 @@ mod tests {
 
     #[test]
     fn the_table_fits_and_says_what_is_missing() {
-        let text = table(&report());
+        let mut report = report();
+        report.scenes[0].ways[4].not_available = Some(["no ", &"x".repeat(90), "\nmore"].concat());
+        let text = table(&report);
+        assert!(text.contains("xxx…") && !text.contains("more\n"), "{text}");
         for line in text.lines() {
             assert!(line.chars().count() <= 100, "{line}");
         }
