@@ -115,8 +115,25 @@ impl<'a> Runner<'a> {
         Ok(kernel)
     }
 
+    /// Runs over these rows, in rising order, and hands on each by itself, four words a pixel.
+    pub fn picked(&self, rows: &[u32], mut take: impl FnMut(&[[u32; 4]])) -> Result<(), GpuError> {
+        // A workgroup is as wide as it is high, so rows that stand together are run together.
+        let fitting = (self.most / u64::from(self.width)).clamp(1, u64::from(WORKGROUP)) as usize;
+        for together in rows.chunk_by(|a, b| a + 1 == *b) {
+            for rows in together.chunks(fitting) {
+                let [first, last] = [rows[0], rows[rows.len() - 1]];
+                self.rows(first..last + 1, |bytes| {
+                    let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(bytes);
+                    // The top row comes first.
+                    words.chunks(self.width as usize).rev().for_each(&mut take);
+                })?;
+            }
+        }
+        Ok(())
+    }
+
     /// Runs over these rows, which are few enough for one dispatch.
-    pub fn rows(&self, rows: Range<u32>, mut take: impl FnMut(&[u8])) -> Result<f64, GpuError> {
+    fn rows(&self, rows: Range<u32>, mut take: impl FnMut(&[u8])) -> Result<f64, GpuError> {
         let gpu = self.gpu;
         let height = rows.end - rows.start;
         let bytes = u64::from(height) * u64::from(self.width) * self.pixel_bytes;
@@ -213,10 +230,4 @@ pub fn compile(gpu: &Gpu, wgsl: &str) -> Result<wgpu::ComputePipeline, GpuError>
         });
     gpu.check()?;
     Ok(pipeline)
-}
-
-/// The pixels that a dispatch wrote, four words each.
-#[must_use]
-pub fn words(bytes: &[u8]) -> Vec<[u32; 4]> {
-    bytemuck::pod_collect_to_vec(bytes)
 }

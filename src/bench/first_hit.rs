@@ -2,7 +2,7 @@
 //!
 //! Every function of theirs is as it is where a picture is rendered; nothing in `shaders/` is there for this.
 
-use super::dispatch::{Runner, words};
+use super::dispatch::Runner;
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
 use crate::gpu::compose::compose;
@@ -12,9 +12,6 @@ use crate::gpu::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::prepare::exact::two_to;
 use crate::settings::Settings;
-
-/// Most rows of a dispatch.
-const ROWS: usize = 16;
 
 const FIRST_HIT: &str = include_str!("first_hit.wgsl");
 
@@ -55,19 +52,11 @@ pub fn hits(
     let runner = Runner::new(gpu, &pipeline.pipeline, 16, width, bind);
     let unit = two_to(packed.scale);
     let mut seen = Vec::with_capacity(rows.len() * width as usize);
-    for together in rows.chunk_by(|a, b| a + 1 == *b) {
-        for rows in together.chunks(ROWS) {
-            let [first, last] = [rows[0], rows[rows.len() - 1]];
-            runner.rows(first..last + 1, |bytes| {
-                // The top row comes first.
-                let words = words(bytes);
-                let lines = words.chunks(width as usize).rev();
-                seen.extend(lines.flatten().map(|&[t, object, ..]| Seen {
-                    object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
-                    t: f64::from(f32::from_bits(t)) * unit,
-                }));
-            })?;
-        }
-    }
+    runner.picked(rows, |pixels| {
+        seen.extend(pixels.iter().map(|&[t, object, ..]| Seen {
+            object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
+            t: f64::from(f32::from_bits(t)) * unit,
+        }));
+    })?;
     Ok(seen)
 }

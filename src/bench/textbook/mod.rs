@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use glam::DVec2;
 
-use super::dispatch::{Runner, compile, words};
+use super::dispatch::{Runner, compile};
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
 use crate::gpu::compose::preprocess;
@@ -149,16 +149,13 @@ impl<'a> Textbook<'a> {
     /// # Errors
     /// As any rendering on the GPU.
     pub fn hits(&self, rows: &[u32]) -> Result<Vec<Seen>, TextbookError> {
-        let runner = self.runner();
         let mut seen = Vec::new();
-        for &y in rows {
-            runner.rows(y..y + 1, |bytes| {
-                seen.extend(words(bytes).into_iter().map(|[t, object, ..]| Seen {
-                    object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
-                    t: f64::from(f32::from_bits(t)),
-                }));
-            })?;
-        }
+        self.runner().picked(rows, |pixels| {
+            seen.extend(pixels.iter().map(|&[t, object, ..]| Seen {
+                object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
+                t: f64::from(f32::from_bits(t)),
+            }));
+        })?;
         Ok(seen)
     }
 }

@@ -106,10 +106,10 @@ fn hits_are_told_with_their_distances() {
     let gpu = gpu();
     let scene = of_ours("notes/walls.txt", [64, 48]);
     let settings = Settings::default();
-    let truth = crate::bench::truth::hits(&scene, &settings, &[7, 20]);
+    let truth = crate::bench::truth::hits(&scene, &settings, &[7, 8, 20]);
     for prepared in [true, false] {
         let textbook = Textbook::new(&gpu, &scene, &settings, prepared, true).unwrap();
-        let hits = textbook.hits(&[7, 20]).unwrap();
+        let hits = textbook.hits(&[7, 8, 20]).unwrap();
         assert_eq!(hits.len(), truth.len());
         for (i, (hit, (truth, _))) in hits.iter().zip(&truth).enumerate() {
             if i % 64 == 0 || i % 64 == 63 {
@@ -123,4 +123,18 @@ fn hits_are_told_with_their_distances() {
             );
         }
     }
+}
+
+/// Sixteen rows of it are more than a dispatch takes.
+#[test]
+fn hits_of_wide_pictures_are_told() {
+    let gpu = gpu();
+    let scene = of_ours("notes/walls.txt", [70_000, 16]);
+    let rows: Vec<u32> = (0..16).collect();
+    let textbook = Textbook::new(&gpu, &scene, &Settings::default(), true, true).unwrap();
+    let hits = textbook.hits(&rows).unwrap();
+    assert_eq!(hits.len(), 16 * 70_000);
+    // In the middle of each row there is a floor or a wall.
+    let mut middles = hits.iter().skip(35_000).step_by(70_000);
+    assert!(middles.all(|hit| hit.object != Met::Nothing && (6.0..20.0).contains(&hit.t)));
 }
