@@ -121,8 +121,17 @@ fn objects(ingredient: Ingredient) -> Vec<Object> {
         Pplane(shader) => vec![floor(Surface::Procedural { shader })],
         SmallSphere => vec![small(Surface::Plain)],
         WideSphere => vec![wide(Surface::Plain)],
-        SmallPsphere(shader) => vec![small(Surface::Procedural { shader })],
-        WidePsphere(shader) => vec![wide(Surface::Procedural { shader })],
+        // Of equal spheres the first hides the others.
+        SmallPsphere(shader) => vec![sphere(
+            DVec3::new(3.0, 2.0, -8.0),
+            1.0,
+            Surface::Procedural { shader },
+        )],
+        WidePsphere(shader) => vec![sphere(
+            DVec3::new(4.0, -30.0, -9.0),
+            28.0,
+            Surface::Procedural { shader },
+        )],
         ManyPlanes => (1..100)
             .map(|i| {
                 plane(
@@ -325,14 +334,20 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
         .collect();
     let (wgsl, spread_features) = composed(&spread);
     assert_valid(&wgsl, "all, unrolled, spread by the hash");
-    // Of planes that coincide only the first is there, and it has no tables.
-    let tiled_features = composed(&[Tiled]).1;
+    // (Without the plain ones, which hide tiles and textures in the same place.)
+    let once: Vec<_> = all
+        .iter()
+        .copied()
+        .filter(|i| few(i) && !matches!(i, Samples | CourseSamples | Plane | Coplanar))
+        .collect();
+    let (wgsl, once_features) = composed(&once);
+    assert_valid(&wgsl, "all, unrolled, a ray a pixel");
     let every = [
         few_features,
+        once_features,
         dark_features,
         plain_features,
         spread_features,
-        tiled_features,
         features,
     ];
     // Together they have every name that the files ask for, so that none is left out above.
