@@ -20,6 +20,10 @@ struct Job {
 @group(0) @binding(1) var<storage, read_write> pixels: array<vec4u>;
 //#else
 // Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
+//#if quad
+// Four pixels side by side; rows are filled up.
+@group(0) @binding(1) var<storage, read_write> pixels: array<vec4u>;
+//#else
 //#if partial
 // Behind the dispatch's pixels comes a list without order of those of which only some samples are sure: records of
 // PARTIAL_WORDS words, of place, the sum of such samples, its error, the bits of the samples in it. In one buffer with the
@@ -32,6 +36,7 @@ struct Pixels {
 @group(0) @binding(1) var<storage, read_write> pixels: Pixels;
 //#else
 @group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
+//#end
 //#end
 //#end
 //#if any_object

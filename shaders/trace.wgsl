@@ -537,6 +537,31 @@ fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
     (*sum).error += select(vec3f(0.0), one.error * (1.01 / f32(SAMPLES)), counts) + 3.0 * U * (*sum).color;
 }
 //#end
+//#if quad
+
+// A pixel's bytes, and its verdict.
+fn make_pixel(pixel: vec2i) -> u32 {
+    let traced = ray_trace(camera_getdir(pixel));
+//#if certified
+    return camera_setpix(traced.color, traced.error) | traced.verdict;
+//#else
+    return camera_setpix(traced.color) | traced.verdict;
+//#end
+}
+
+// Four pixels side by side, as far as there are any: one store costs less than four.
+@compute @workgroup_size(WORKGROUP, WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let column = 4u * id.x;
+    if (column >= job.size.x) | (id.y >= job.size.y) {
+        return;
+    }
+    // Rows of the picture go down, y goes up.
+    let pixel = vec2i(i32(job.first.x + column), i32(job.first.y) - i32(id.y));
+    pixels[id.y * ((job.size.x + 3u) / 4u) + id.x] = vec4u(make_pixel(pixel), make_pixel(pixel + vec2i(1, 0)),
+        make_pixel(pixel + vec2i(2, 0)), make_pixel(pixel + vec2i(3, 0)));
+}
+//#else
 
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -630,3 +655,4 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
 //#end
 }
+//#end

@@ -448,7 +448,10 @@ fn what_is_not_used_is_not_there() {
         ("fn told(", &|i| {
             matches!(i, Tiled | Pplane(0 | 2) | Texplane(_))
         }),
-        ("vec4u", &|i| i == Values),
+        ("vec4u(bitcast", &|i| i == Values),
+        ("fn make_pixel", &|i| {
+            !objects(i).is_empty() && !lit(i) && !matches!(i, ManyPlanes | ManySpheres)
+        }),
         ("switch", &|i| {
             matches!(
                 i,

@@ -29,6 +29,8 @@ pub struct FeatureSet {
     pub bvh: bool,
     /// Objects stand in the text of the shader, not in buffers.
     pub unrolled: bool,
+    /// An invocation makes four pixels side by side: of scenes so simple that storing is what costs.
+    pub quad: bool,
     /// The kinds of surface.
     pub kinds: BTreeSet<Kind>,
     /// The unquantised values are wanted too.
@@ -81,6 +83,13 @@ pub const MOST_PARTIAL: u32 = 1024;
 /// Words of such a record before the bits of its samples: place, three sums, three errors.
 pub const PARTIAL_HEAD: u32 = 7;
 
+/// Pixels that an invocation makes where it makes several.
+pub const QUAD: u32 = 4;
+
+/// Scenes of up to this many objects have several pixels an invocation, fast and certified: beyond, storing is not what
+/// costs, and the registers are missed (docs/BENCH.md).
+const QUAD_OBJECTS: [usize; 2] = [8, 4];
+
 impl FeatureSet {
     /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a limit on
     /// loops (see [`Gpu::lanes`](super::device::Gpu::lanes)).
@@ -94,6 +103,7 @@ impl FeatureSet {
             .iter()
             .map(|p| p.front)
             .chain(packed.rectangles.iter().map(|r| r.front));
+        let certified = settings.precision == Precision::Certified && !settings.values;
         Self {
             planes: !packed.planes.is_empty(),
             rectangles: !packed.rectangles.is_empty(),
@@ -103,9 +113,14 @@ impl FeatureSet {
             groups: packed.planes.iter().any(|p| p.group != 0)
                 || packed.rectangles.iter().any(|r| r.group != 0),
             tables: !packed.tables.words.is_empty(),
-            certified: settings.precision == Precision::Certified && !settings.values,
+            certified,
             bvh: !packed.bvh.is_empty(),
             unrolled: packed.tiles.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
+            quad: packed.tiles.is_none()
+                && packed.lit.is_none()
+                && (1..=QUAD_OBJECTS[usize::from(certified)]).contains(&objects)
+                && settings.samples <= 1
+                && !settings.values,
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
             samples: settings.samples,
@@ -237,6 +252,7 @@ impl FeatureSet {
             ("psphere", psphere),
             ("position", is_lit || tiled || textured || pplane),
             ("from_center", psphere || lit.spheres),
+            ("quad", any && self.quad),
             ("values", self.values),
             ("samples", any && self.samples > 1),
             ("partial", self.partial_words() > 0),

@@ -7,7 +7,7 @@ use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::device::Gpu;
-use super::features::FeatureSet;
+use super::features::{FeatureSet, QUAD};
 use super::pack::{LitObject, Object, Packed};
 
 /// A shader ready to run on a scene.
@@ -15,6 +15,8 @@ use super::pack::{LitObject, Object, Packed};
 pub struct Pipeline {
     /// The compiled shader.
     pub pipeline: wgpu::ComputePipeline,
+    /// Pixels side by side that an invocation makes; rows in its buffer are whole multiples of them.
+    pub across: u32,
     /// Bytes that the shader writes for a pixel.
     pub pixel_bytes: u64,
     /// Samples whose offsets the shader reads, for each pixel; 0 where it does not.
@@ -59,6 +61,11 @@ impl Pipeline {
         let compile_seconds = start.elapsed().as_secs_f64();
         Ok(Self {
             pipeline,
+            across: if features.names().contains("quad") {
+                QUAD
+            } else {
+                1
+            },
             pixel_bytes: if features.values { 16 } else { 4 },
             offsets: if features.names().contains("course") {
                 features.samples

@@ -109,6 +109,7 @@ pub(crate) fn count(
     }
     let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl).unwrap();
     let [width, height] = scene.camera.pixeldim;
+    let pitch = width.next_multiple_of(pipeline.across);
     let job = Job {
         first: [0, height - 1],
         size: [width, height],
@@ -122,7 +123,7 @@ pub(crate) fn count(
             contents: bytemuck::bytes_of(&job),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-    let size = u64::from(width) * u64::from(height) * 4;
+    let size = u64::from(pitch) * u64::from(height) * 4;
     let empty = |usage| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("pixels"),
@@ -141,7 +142,8 @@ pub(crate) fn count(
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline.pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
-        pass.dispatch_workgroups(width.div_ceil(WORKGROUP), height.div_ceil(WORKGROUP), 1);
+        let groups = [pitch / pipeline.across, height].map(|n| n.div_ceil(WORKGROUP));
+        pass.dispatch_workgroups(groups[0], groups[1], 1);
     }
     encoder.copy_buffer_to_buffer(&pixels, 0, &staging, 0, size);
     gpu.queue.submit([encoder.finish()]);
@@ -155,7 +157,9 @@ pub(crate) fn count(
     gpu.check().unwrap();
     let view = staging.get_mapped_range(..).unwrap();
     let mut count = Count::default();
-    for (found, right) in view.chunks_exact(4).zip(rgb.chunks_exact(3)) {
+    let rows = view.chunks_exact(4 * pitch as usize);
+    let found = rows.flat_map(|row| row[..4 * width as usize].chunks_exact(4));
+    for (found, right) in found.zip(rgb.chunks_exact(3)) {
         count.pixels += 1;
         if found[3] == 0 {
             count.sure += 1;

@@ -61,7 +61,9 @@ impl Assembly {
         partials.take(rectangle, self.width as u32, layout.words, list);
         let columns = rectangle.columns.start as usize..rectangle.columns.end as usize;
         let pixel_bytes = if self.values { 16 } else { 4 };
-        for (row, line) in bytes.chunks_exact(columns.len() * pixel_bytes).enumerate() {
+        // A row may be longer than it has pixels.
+        for (row, line) in bytes.chunks_exact(bytes.len() / rows).enumerate() {
+            let line = &line[..columns.len() * pixel_bytes];
             let place = row * self.width + columns.start..row * self.width + columns.end;
             let rgb = &mut band.rgb[3 * place.start..3 * place.end];
             let mut verdicts = 0;
@@ -125,12 +127,12 @@ pub(crate) mod tests {
     /// What [`Assembly::take`] gets under test.
     pub(super) fn tampered(rectangle: &Rectangle, bytes: &[u8], values: bool) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
-        let columns = rectangle.columns.end - rectangle.columns.start;
         let (pixels, verdict) = TAMPERED.with_borrow(Clone::clone);
         for [x, y] in pixels {
             if !values && rectangle.band.contains(&y) && rectangle.columns.contains(&x) {
                 let row = rectangle.band.end - 1 - y;
-                let at = 4 * (row * columns + x - rectangle.columns.start) as usize;
+                let line = bytes.len() / rectangle.band.len();
+                let at = row as usize * line + 4 * (x - rectangle.columns.start) as usize;
                 bytes[at] ^= 1;
                 bytes[at + 3] = verdict;
             }

@@ -66,9 +66,12 @@ pub fn run(
 ) -> Result<BandTimes, GpuError> {
     let (width, rows) = (frame.width, frame.rows.clone());
     let largest = largest_dispatch(gpu, pipeline, width, &rows);
+    // Rows are filled up to whole invocations.
+    let filled =
+        largest + u64::from(pipeline.across - 1) * largest.min(u64::from(rows.end - rows.start));
     let mut slots = [
-        Slot::new(gpu, pipeline, largest),
-        Slot::new(gpu, pipeline, largest),
+        Slot::new(gpu, pipeline, filled),
+        Slot::new(gpu, pipeline, filled),
     ];
     gpu.check()?;
     let mut plan = Plan::new(width, rows, largest, frame.tests, frame.band_rows);

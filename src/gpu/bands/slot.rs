@@ -108,7 +108,8 @@ impl Slot {
     ) {
         let columns = rectangle.columns.end - rectangle.columns.start;
         let rows = rectangle.band.end - rectangle.band.start;
-        let layout = partial::Layout::new(pipeline, rectangle.pixels());
+        let pitch = columns.next_multiple_of(pipeline.across);
+        let layout = partial::Layout::new(pipeline, u64::from(pitch) * u64::from(rows));
         let job = Job {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
@@ -145,7 +146,8 @@ impl Slot {
             });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &self.bind_group, &[]);
-            pass.dispatch_workgroups(columns.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
+            let groups = [pitch / pipeline.across, rows].map(|n| n.div_ceil(WORKGROUP));
+            pass.dispatch_workgroups(groups[0], groups[1], 1);
         }
         let bytes = layout.bytes;
         encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.staging, 0, bytes);
