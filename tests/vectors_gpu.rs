@@ -54,19 +54,8 @@ fn open(wanted: Option<&str>) -> Gpu {
 fn run(wgsl: &str, input: &[u8], count: usize) -> Vec<DVec3> {
     let gpu = open(None);
     let gpu_device = &gpu.device;
-    let module = gpu_device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("test"),
-        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-    });
-    let pipeline = gpu_device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("test"),
-        layout: None,
-        module: &module,
-        entry_point: Some("test"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    gpu.check()
+    let pipeline = gpu
+        .compile(wgsl, "test")
         .unwrap_or_else(|error| panic!("{error}\n{wgsl}"));
     let inputs = gpu_device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("inputs"),

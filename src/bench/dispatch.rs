@@ -177,21 +177,12 @@ impl<'a> Runner<'a> {
         if let Some([_, staging]) = &self.clock {
             staging.map_async(wgpu::MapMode::Read, .., |_| ());
         }
-        let polled = gpu.device.poll(wgpu::PollType::Wait {
-            submission_index: Some(index),
-            timeout: None,
-        });
-        gpu.check()?;
-        let lost = |reason: String| GpuError::Lost {
-            adapter: gpu.name.clone(),
-            reason,
-        };
-        polled.map_err(|error| lost(error.to_string()))?;
+        gpu.wait(index)?;
         let waited = start.elapsed().as_secs_f64();
         let mut ticks = None;
         if let Some([_, staging]) = &self.clock {
             let view = staging.get_mapped_range(..);
-            let view = view.map_err(|error| lost(error.to_string()))?;
+            let view = view.map_err(|error| gpu.lost(&error))?;
             ticks = bytemuck::pod_collect_to_vec::<u8, u64>(&view)
                 .try_into()
                 .ok();
@@ -199,7 +190,7 @@ impl<'a> Runner<'a> {
             staging.unmap();
         }
         let view = self.staging.get_mapped_range(..bytes);
-        let view = view.map_err(|error| lost(error.to_string()))?;
+        let view = view.map_err(|error| gpu.lost(&error))?;
         take(&view);
         drop(view);
         self.staging.unmap();
@@ -207,27 +198,4 @@ impl<'a> Runner<'a> {
             end.saturating_sub(begin) as f64 * f64::from(gpu.queue.get_timestamp_period()) * 1e-9
         }))
     }
-}
-
-/// A shader of ours compiled, with the layout that it asks for.
-pub fn compile(gpu: &Gpu, wgsl: &str) -> Result<wgpu::ComputePipeline, GpuError> {
-    let module = gpu
-        .device
-        .create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("bench"),
-            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-        });
-    gpu.check()?;
-    let pipeline = gpu
-        .device
-        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("bench"),
-            layout: None,
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-    gpu.check()?;
-    Ok(pipeline)
 }

@@ -8,6 +8,7 @@ use plumb::certify::verdict::meaning;
 use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Fault, Limits, Traced, Unwatched, ray_trace};
+use plumb::gpu::single::Single;
 use plumb::jitter;
 use plumb::jitter::{Jitter, Sampling};
 use plumb::prepare::{Prepared, View};
@@ -17,7 +18,7 @@ use plumb::scene::Scene;
 use serde_json::json;
 
 use super::args::PictureOptions;
-use super::digits::{components, line, short, triple};
+use super::digits::{components, line, short, short_triple, triple};
 use super::sight::Sight;
 use super::tree::Tree;
 use super::verdict::{self, Verdict};
@@ -67,8 +68,12 @@ HOW TO READ IT
   decided by  What the CPU needed to be sure of the bytes: f64 with error bounds,
            intervals of many bits, exact arithmetic.
 
-  GPU      Whether the GPU is sure of them by itself, or in doubt; then the CPU
-           decides.";
+  f64      255 times the colour in f64, and how far off that may be: the first
+           thing that the CPU tries.
+
+  GPU      Whether the GPU is sure of the bytes by itself, or in doubt; then the
+           CPU decides. Below, 255 times its colour in f32, and its bound: a byte
+           is sure where no whole number is as near.";
 
 /// What `plumb probe` takes.
 #[derive(Debug, clap::Args)]
@@ -228,7 +233,23 @@ impl<'a> Probe<'a> {
         };
         line(to, "bytes", format!("{r} {g} {b}{doubt}"))?;
         line(to, "decided by", meaning(decided.stage).to_owned())?;
+        let rough = stages.rough(&self.limits, sampling, self.x, self.y);
+        line(
+            to,
+            "f64",
+            rough.map_or_else(
+                || "leaves open what the rays meet".to_owned(),
+                |v| within(v.map(|c| 255.0 * c.value), v.map(|c| 255.0 * c.error)),
+            ),
+        )?;
         line(to, "GPU", self.gpu().to_string())?;
+        if let Some(Single { value, error }) = self.single() {
+            line(
+                to,
+                "GPU's f32",
+                within(value.map(f64::from), error.map(f64::from)),
+            )?;
+        }
         Ok(Ok(()))
     }
 
@@ -241,6 +262,7 @@ impl<'a> Probe<'a> {
             .pixel(row.as_deref(), width as usize, self.x as usize);
         let stages = Stages::new(self.scene, self.view);
         let decided = stages.trace(&self.limits, sampling, self.x, self.y)?;
+        let rough = stages.rough(&self.limits, sampling, self.x, self.y);
         let value = json!({
             "software": SOFTWARE,
             "scene": name,
@@ -249,7 +271,15 @@ impl<'a> Probe<'a> {
             "value": decided.value,
             "bytes": decided.bytes,
             "decided": decided.stage.name(),
+            "f64": rough.map(|v| json!({
+                "value": v.map(|c| c.value),
+                "bound": v.map(|c| c.error),
+            })),
             "gpu": self.gpu().to_string(),
+            "f32": self.single().map(|Single { value, error }| json!({
+                "value": value.map(|c| f64::from(c) / 255.0),
+                "bound": error.map(|c| f64::from(c) / 255.0),
+            })),
         });
         Ok(format!("{value:#}\n"))
     }
@@ -257,6 +287,14 @@ impl<'a> Probe<'a> {
     /// What the GPU has to say of the pixel.
     fn gpu(&self) -> Verdict {
         verdict::ask(self.scene, &self.picture.settings(), self.x, self.y)
+    }
+
+    /// What it has before it quantises, and how far off it may be; of a single sample.
+    fn single(&self) -> Option<Single> {
+        let settings = self.picture.settings();
+        (settings.samples == 1)
+            .then(|| verdict::value(self.scene, &settings, self.x, self.y))
+            .flatten()
     }
 
     /// The offsets of the samples, if there are several.
@@ -369,6 +407,16 @@ impl<'a> Probe<'a> {
         tree.finish()?;
         Ok(traced.map(|traced| traced.color))
     }
+}
+
+/// 255 times a colour, and its bound.
+fn within(value: [f64; 3], bound: [f64; 3]) -> String {
+    let bound = bound.map(|b| format!("{b:.1e}"));
+    format!(
+        "{} times 255, off by at most ({})",
+        short_triple(value),
+        bound.join(", ")
+    )
 }
 
 /// Where in its pixel a sample is.

@@ -3,6 +3,9 @@
 use std::fmt;
 
 use plumb::certify::Stage;
+use plumb::gpu::device;
+use plumb::gpu::pack::Packed;
+use plumb::gpu::single::{Single, single};
 use plumb::render::{Backend, Report, Settings, render};
 use plumb::scene::Scene;
 
@@ -26,6 +29,16 @@ impl fmt::Display for Verdict {
             Self::Unknown(why) => f.write_str(why),
         }
     }
+}
+
+/// What it has before it quantises, with bounds; None where it has no value, or cannot be asked.
+pub(crate) fn value(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Single> {
+    let packed = Packed::new(scene, settings);
+    if packed.unprovable.is_some() {
+        return None;
+    }
+    let gpu = device::open(settings.adapter.as_deref()).ok()?;
+    single(&gpu, &packed, settings, [x, y]).ok().flatten()
 }
 
 /// Asks it for the whole row, certified: what is rendered is what is told.

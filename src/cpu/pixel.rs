@@ -124,6 +124,23 @@ impl<'a> Stages<'a> {
         self
     }
 
+    /// The value of pixel (x, y) in f64 with error bounds, if they suffice to tell what its rays meet.
+    pub fn rough(
+        &self,
+        limits: &Limits,
+        sampling: Sampling<'_>,
+        x: u32,
+        y: u32,
+    ) -> Option<[Bounded; 3]> {
+        let v = make_pixel(&self.bounded, limits, sampling, x, y).ok()?;
+        // The bound is kept low by its own roundings until it is used.
+        let used = |c: Bounded| Bounded {
+            error: c.error * Bounded::GROW,
+            ..c
+        };
+        Some([used(v.x), used(v.y), used(v.z)])
+    }
+
     /// Pixel (x, y).
     pub fn trace(
         &self,

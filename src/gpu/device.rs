@@ -179,6 +179,47 @@ impl Gpu {
         }
         Ok(())
     }
+
+    /// Compiles the shader `wgsl` from its entry point on, with the bindings that it uses.
+    pub fn compile(&self, wgsl: &str, entry: &str) -> Result<wgpu::ComputePipeline, GpuError> {
+        let module = self
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("plumb"),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            });
+        self.check()?;
+        let pipeline = self
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("plumb"),
+                layout: None,
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+        self.check()?;
+        Ok(pipeline)
+    }
+
+    /// Waits for what was submitted, and for what is to be mapped after it.
+    pub fn wait(&self, index: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+        let polled = self.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(index),
+            timeout: None,
+        });
+        self.check()?;
+        polled.map(|_| ()).map_err(|error| self.lost(&error))
+    }
+
+    /// The error of a device that does not answer as it should.
+    pub fn lost(&self, reason: &impl ToString) -> GpuError {
+        GpuError::Lost {
+            adapter: self.name.clone(),
+            reason: reason.to_string(),
+        }
+    }
 }
 
 fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {

@@ -14,6 +14,7 @@ pub mod literal;
 pub mod pack;
 pub mod pipeline;
 pub mod selftest;
+pub mod single;
 
 /// What can go wrong on the way to or on the GPU.
 #[derive(Debug, thiserror::Error)]

@@ -40,24 +40,7 @@ impl Pipeline {
         let buffers = upload(gpu, packed, features)?;
         let upload_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let module = gpu
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("plumb"),
-                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-            });
-        gpu.check()?;
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("plumb"),
-                layout: None,
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
-        gpu.check()?;
+        let pipeline = gpu.compile(wgsl, "main")?;
         let compile_seconds = start.elapsed().as_secs_f64();
         Ok(Self {
             pipeline,

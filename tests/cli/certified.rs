@@ -208,4 +208,24 @@ fn probe_says_what_decided_a_pixel() {
     assert!(text.contains(&format!("\nbytes        {}\n", bytes.join(" "))));
     assert_eq!(report["decided"], "f64");
     assert_eq!(report["gpu"], format!("sure: {}", bytes.join(" ")));
+    // Both bounds hold, and neither is idle.
+    let mut known = 0;
+    let number = |of: &str, what: &str, i: usize| report[of][what][i].as_f64().unwrap();
+    for i in 0..3 {
+        let apart = (number("f32", "value", i) - number("f64", "value", i)).abs();
+        let bound = number("f32", "bound", i);
+        assert!(
+            apart <= bound + number("f64", "bound", i),
+            "{apart}, {bound}"
+        );
+        // The room is not red, green and blue alike.
+        let value = number("f64", "value", i);
+        known += usize::from(value > 0.0);
+        assert!(
+            value == 0.0 || (1e-8..1e-3).contains(&(bound / value)),
+            "{bound}"
+        );
+    }
+    assert!(known > 0);
+    assert!(text.contains("\nGPU's f32    ("), "{text}");
 }

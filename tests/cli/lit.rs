@@ -293,7 +293,7 @@ fn without_lights_probe_knows_nothing_of_rays() {
     let desk = Desk::new();
     let text = desk.run(&["probe", "room.txt", "20", "14"]).ends(0).text();
     assert!(
-        !text.contains("rays") && !text.contains("times 255"),
+        !text.contains("rays") && !text.contains("\ntimes 255"),
         "{text}"
     );
     let options = ["--samples", "2", "--sample", "1"];

@@ -170,19 +170,9 @@ pub(crate) fn run(
 "
     );
     let device = &gpu.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("test"),
-        source: wgpu::ShaderSource::Wgsl(wgsl.as_str().into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("test"),
-        layout: None,
-        module: &module,
-        entry_point: Some("test"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    gpu.check().unwrap_or_else(|error| panic!("{error}"));
+    let pipeline = gpu
+        .compile(&wgsl, "test")
+        .unwrap_or_else(|error| panic!("{error}"));
     let filled = |contents: &[u8], usage| {
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("input"),

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use glam::DVec2;
 
-use super::dispatch::{Runner, compile};
+use super::dispatch::Runner;
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
 use crate::gpu::compose::preprocess;
@@ -90,7 +90,7 @@ impl<'a> Textbook<'a> {
         let wgsl = wgsl(scene, settings, gpu.lanes, prepared, report);
         Ok(Self {
             gpu,
-            pipeline: compile(gpu, &wgsl)?,
+            pipeline: gpu.compile(&wgsl, "main")?,
             buffers: buffers.into(),
             size: scene.camera.pixeldim,
             report,

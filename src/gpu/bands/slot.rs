@@ -174,23 +174,14 @@ impl Slot {
             return Ok((0, 0.0));
         };
         let start = Instant::now();
-        let polled = gpu.device.poll(wgpu::PollType::Wait {
-            submission_index: Some(index),
-            timeout: None,
-        });
-        gpu.check()?;
-        let lost = |reason: String| GpuError::Lost {
-            adapter: gpu.name.clone(),
-            reason,
-        };
-        polled.map_err(|error| lost(error.to_string()))?;
+        gpu.wait(index)?;
         let waited = start.elapsed().as_secs_f64();
         let kernel = match &self.clock {
             Some(clock) => {
                 let view = clock
                     .staging
                     .get_mapped_range(..)
-                    .map_err(|error| lost(error.to_string()))?;
+                    .map_err(|error| gpu.lost(&error))?;
                 let ticks: [u64; 2] = [word(&view, 0), word(&view, 1)];
                 drop(view);
                 clock.staging.unmap();
@@ -204,7 +195,7 @@ impl Slot {
         let view = self
             .staging
             .get_mapped_range(..layout.bytes)
-            .map_err(|error| lost(error.to_string()))?;
+            .map_err(|error| gpu.lost(&error))?;
         assembly.take(&rectangle, &layout, &view);
         drop(view);
         self.staging.unmap();

@@ -157,22 +157,10 @@ fn wgsl() -> String {
 
 /// What the device makes of the pairs: [`RESULTS`] words for each.
 fn compute(gpu: &Gpu, pairs: &[[u32; 2]]) -> Result<Vec<u32>, GpuError> {
+    use wgpu::BufferUsages;
     use wgpu::util::DeviceExt as _;
-    use wgpu::{BufferUsages, PollType};
     let device = &gpu.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("self-test"),
-        source: wgpu::ShaderSource::Wgsl(wgsl().into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("self-test"),
-        layout: None,
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    gpu.check()?;
+    let pipeline = gpu.compile(&wgsl(), "main")?;
     let filled = |contents: &[u8]| {
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("self-test"),
@@ -213,19 +201,10 @@ fn compute(gpu: &Gpu, pairs: &[[u32; 2]]) -> Result<Vec<u32>, GpuError> {
     encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, size);
     let index = gpu.queue.submit([encoder.finish()]);
     staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    let polled = device.poll(PollType::Wait {
-        submission_index: Some(index),
-        timeout: None,
-    });
-    gpu.check()?;
-    let lost = |reason: String| GpuError::Lost {
-        adapter: gpu.name.clone(),
-        reason,
-    };
-    polled.map_err(|error| lost(error.to_string()))?;
+    gpu.wait(index)?;
     let view = staging
         .get_mapped_range(..)
-        .map_err(|error| lost(error.to_string()))?;
+        .map_err(|error| gpu.lost(&error))?;
     Ok(bytemuck::pod_collect_to_vec(&view[..]))
 }
 

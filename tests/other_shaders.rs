@@ -1,4 +1,4 @@
-//! The shaders that only `plumb bench` has are valid WGSL for every scene of ours; no GPU needed.
+//! The shaders that only `plumb bench` and `plumb probe` have are valid WGSL for every scene of ours; no GPU needed.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,6 +8,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use plumb::bench::{first_hit, textbook};
 use plumb::gpu::device::SOFTWARE_LANES;
 use plumb::gpu::pack::Packed;
+use plumb::gpu::single;
 use plumb::render::{Precision, Settings};
 
 use common::{good_scenes, read};
@@ -38,6 +39,11 @@ fn a_picture_s_shader_takes_the_other_entry_point() {
             asked += 1;
             validate(&path.display().to_string(), &wgsl);
             assert_eq!(wgsl.matches("@compute").count(), 1);
+            if precision == Precision::Certified {
+                let features = single::features(&packed, &settings, SOFTWARE_LANES);
+                let wgsl = single::wgsl(&packed, &features).unwrap();
+                validate(&path.display().to_string(), &wgsl);
+            }
             // What is measured is what renders: the bounds stay where there are any.
             let bounds = wgsl.contains("const U = ");
             assert_eq!(
