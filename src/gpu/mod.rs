@@ -52,7 +52,7 @@ pub enum GpuError {
     },
     /// More objects than the loops of the shader are sure to reach.
     #[error(
-        "the scene has {found} objects outside the tree of spheres, and a shader's loops are sure to reach {allowed} only"
+        "the scene has {found} planes and spheres to go through one by one, and a shader's loops are sure to reach {allowed} only"
     )]
     TooMany {
         /// Objects that a loop would ask.

@@ -24,7 +24,6 @@ pub mod world;
 use std::sync::Arc;
 
 use later::{Later, Laters};
-use rayon::prelude::*;
 use tiles::Tiles;
 
 use crate::real::Real;
@@ -70,7 +69,7 @@ pub struct Prepared<R> {
     pub camera: Camera<R>,
     /// The planes that a primary ray can hit, in file order.
     pub planes: Vec<Plane<R>>,
-    /// The spheres that a primary ray can hit, in file order.
+    /// The spheres that a primary ray can hit, in file order; where they are in tiles, those that are seen.
     pub spheres: Vec<Sphere<R>>,
     /// Where on the screen they are, if there are many.
     pub tiles: Option<Arc<Tiles>>,
@@ -106,7 +105,11 @@ impl<R: Real> Prepared<R> {
         let groups = Arc::new(world::groups(scene, equal_spheres));
         let hidden = hidden::hidden(scene, &groups, view.screen_tolerance);
         let mut prepared = Self::of(scene, view, true, &hidden);
-        prepared.tiles = Tiles::new(scene, &prepared.camera, &prepared.spheres, view).map(Arc::new);
+        if scene.objects.len() >= tiles::WORTHWHILE {
+            let (spheres, tiles) = Tiles::sorted(scene, &prepared.camera, view, &hidden);
+            prepared.tiles = (!spheres.is_empty()).then(|| Arc::new(tiles));
+            prepared.spheres = spheres;
+        }
         let materials = scene.objects.iter().map(|object| object.material);
         let is_plane = scene
             .objects
@@ -156,7 +159,7 @@ impl<R: Real> Prepared<R> {
         }
     }
 
-    /// The scene without tiles, world and tables; spheres in file order if they are wanted.
+    /// The scene without tiles, world and tables; spheres in file order if they are wanted and few.
     fn of(scene: &Scene, view: View, with_spheres: bool, hidden: &[bool]) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
@@ -190,14 +193,13 @@ impl<R: Real> Prepared<R> {
             }
             _ => None,
         };
-        let objects = &scene.objects;
-        let spheres = if !with_spheres {
-            Vec::new()
-        } else if objects.len() < tiles::WORTHWHILE {
-            objects.iter().enumerate().filter_map(sphere).collect()
+        // Many are made with their tiles, or later.
+        let few = with_spheres && scene.objects.len() < tiles::WORTHWHILE;
+        let objects = scene.objects.iter().enumerate();
+        let spheres = if few {
+            objects.filter_map(sphere).collect()
         } else {
-            // Numbers that belong to a thread are made elsewhere: so many spheres are made later in those.
-            objects.par_iter().enumerate().filter_map(sphere).collect()
+            Vec::new()
         };
         let any_clear = scene
             .objects

@@ -50,7 +50,7 @@ pub struct Tiles {
 }
 
 /// The pixels that a sphere may cover: first and last column and row.
-type Covered = Option<[[u32; 2]; 2]>;
+type Covered = [[u32; 2]; 2];
 
 impl Tiles {
     /// The places of the spheres that a ray through this point of the screen may hit, in pixels from the bottom left. The
@@ -64,38 +64,51 @@ impl Tiles {
         &self.members[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 
-    /// Sorts spheres into tiles; None where they are so few that every one may be asked.
-    pub fn new<R: Real>(
+    /// The spheres that are seen somewhere, prepared, and where that is.
+    pub fn sorted<R: Real>(
         scene: &Scene,
         camera: &Camera<R>,
-        spheres: &[Sphere<R>],
         view: View,
-    ) -> Option<Self> {
-        if spheres.is_empty() || scene.objects.len() < WORTHWHILE {
-            return None;
-        }
-        let ball = |sphere: &Sphere<R>| match scene.objects[sphere.object].shape {
-            Shape::Sphere { center, radius } => (center, radius),
-            Shape::Plane { .. } => unreachable!("a sphere is made from a sphere"),
+        hidden: &[bool],
+    ) -> (Vec<Sphere<R>>, Self) {
+        let ball = |object: usize| match scene.objects[object].shape {
+            Shape::Sphere { center, radius } => Some((center, radius)),
+            Shape::Plane { .. } => None,
         };
         let outline = Outlines::new(scene, camera, view);
-        let (most, covered): (Vec<f32>, Vec<Covered>) = spheres
-            .par_iter()
-            .map(|sphere| {
-                let (center, radius) = ball(sphere);
-                outline.of(center, radius)
-            })
+        let seen = |object: usize| {
+            let (center, radius) = ball(object).filter(|_| !hidden[object])?;
+            let (most, covered) = outline.of(center, radius)?;
+            let sphere = Sphere::new(scene.camera.viewpoint, camera, object, center, radius)?;
+            Some((sphere, (most, covered)))
+        };
+        let (spheres, seen): (Vec<Sphere<R>>, Vec<(f32, Covered)>) = (0..scene.objects.len())
+            .into_par_iter()
+            .filter_map(seen)
             .unzip();
-        let order = nearest_first(&most, |place| ball(&spheres[place]));
+        let (most, covered): (Vec<f32>, Vec<Covered>) = seen.into_iter().unzip();
+        let ball = |place: usize| ball(spheres[place].object).unwrap_or_default();
+        let tiles = Self::of(scene.camera.pixeldim, most, &covered, ball);
+        (spheres, tiles)
+    }
+
+    /// The lists of spheres that cover these pixels.
+    fn of(
+        pixels: [u32; 2],
+        most: Vec<f32>,
+        covered: &[Covered],
+        ball: impl Fn(usize) -> (DVec3, f64),
+    ) -> Self {
+        let order = nearest_first(&most, ball);
         let mut sides = SIDES;
-        while !few_enough(scene.camera.pixeldim, sides, &covered) {
+        while !few_enough(pixels, sides, covered) {
             sides = sides.map(|side| 2 * side);
         }
-        let count = counts(scene.camera.pixeldim, sides);
+        let count = counts(pixels, sides);
         let tiles = count[0] as usize * count[1] as usize;
         let mut starts = vec![0_u32; tiles + 2];
         let each = |place: usize, then: &mut dyn FnMut(usize)| {
-            let Some([x, y]) = covered[place] else { return };
+            let [x, y] = covered[place];
             for row in y[0] / sides[1]..=y[1] / sides[1] {
                 for column in x[0] / sides[0]..=x[1] / sides[0] {
                     then(row as usize * count[0] as usize + column as usize);
@@ -119,13 +132,13 @@ impl Tiles {
             });
         }
         starts.pop();
-        Some(Self {
+        Self {
             sides,
             count,
             starts,
             members,
             most,
-        })
+        }
     }
 }
 
@@ -139,14 +152,14 @@ fn few_enough(pixels: [u32; 2], sides: [u32; 2], covered: &[Covered]) -> bool {
     if count == [1, 1] {
         return true;
     }
-    let entries = |covered: &[[u32; 2]; 2]| {
+    let entries = |covered: &Covered| {
         let [columns, rows] = [0, 1].map(|i| {
             let [first, last] = covered[i];
             u64::from(last / sides[i] - first / sides[i] + 1)
         });
         columns * rows
     };
-    let total: u64 = covered.par_iter().flatten().map(entries).sum();
+    let total: u64 = covered.par_iter().map(entries).sum();
     count[0] * count[1] <= MOST_TILES && total <= ENTRIES + 8 * covered.len() as u64
 }
 
@@ -200,8 +213,8 @@ impl Outlines {
         }
     }
 
-    /// The largest 1/s of the sphere's hits, and the pixels that it may cover.
-    fn of(&self, center: DVec3, radius: f64) -> (f32, Covered) {
+    /// The largest 1/s of the sphere's hits, and the pixels that it may cover; None if it covers none.
+    fn of(&self, center: DVec3, radius: f64) -> Option<(f32, Covered)> {
         let c = (center - self.viewpoint) * self.unit;
         let r = radius * self.unit;
         let (depth, d) = (-c.z, self.distance);
@@ -209,7 +222,7 @@ impl Outlines {
         // A NaN is no more than anything; and squares of such numbers stay in range.
         let outside = depth > r * CLEARANCE && depth > 1e-100 && depth < 1e100;
         if !outside {
-            return (f32::MAX, Some(everywhere));
+            return Some((f32::MAX, everywhere));
         }
         // H.z = −d·s is at most that of the sphere's nearest point.
         let nearest = (d / (depth - r) * (1.0 + 1e-6)).min(f64::from(f32::MAX) * 0.9);
@@ -238,11 +251,11 @@ impl Outlines {
                 continue;
             }
             if low > last || high < 0.0 || low > high {
-                return (most, None);
+                return None;
             }
             covered[i] = [low.max(0.0) as u32, high.min(last) as u32];
         }
-        (most, Some(covered))
+        Some((most, covered))
     }
 }
 
