@@ -26,12 +26,17 @@ struct Sphere {
     most: f32,
 }
 
+// Above 0 where the ray through the pixel `at`, from the sphere's anchor, meets the sphere.
+fn sphere_disc(sphere: Sphere, at: vec2f) -> f32 {
+    return (sphere.square.x * at.x + sphere.square.y * at.y + sphere.affine.x) * at.x
+        + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;
+}
+
 // The sphere as a primary ray meets it; a tangent ray misses.
 fn sphere_hits(sphere: Sphere, ray: Ray) -> Candidate {
     let at = from_pixel(ray, sphere.anchor);
     let along = sphere.along.x * at.x + sphere.along.y * at.y + sphere.along.z;
-    let disc = (sphere.square.x * at.x + sphere.square.y * at.y + sphere.affine.x) * at.x
-        + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;
+    let disc = sphere_disc(sphere, at);
     var candidate: Candidate;
 //#if certified
     candidate.hit = (disc > sphere.disc_error) & (along > sphere.along_error);
@@ -85,8 +90,7 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
     let sphere = spheres[index].sphere;
     let point = spheres[index].hit;
     let at = vec3f(from_pixel(ray, sphere.anchor), 1.0);
-    let disc = (sphere.square.x * at.x + sphere.square.y * at.y + sphere.affine.x) * at.x
-        + (sphere.square.z * at.y + sphere.affine.y) * at.y + sphere.affine.z;
+    let disc = sphere_disc(sphere, at.xy);
     let s = 1.0 / hit.inverse;
 //#if certified
     let least = barrier1(max(disc, sphere.disc_error));

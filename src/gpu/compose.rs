@@ -28,10 +28,13 @@ const STACK: usize = 8;
 const FINE: f32 = 0.125;
 
 const BINDINGS: &str = include_str!("../../shaders/bindings.wgsl");
+const CLOSEST: &str = include_str!("../../shaders/closest.wgsl");
 const CAMERA: &str = include_str!("../../shaders/camera.wgsl");
 const BVH: &str = include_str!("../../shaders/bvh.wgsl");
 const JITTER: &str = include_str!("../../shaders/jitter.wgsl");
 const LIGHT: &str = include_str!("../../shaders/light.wgsl");
+const MAIN: &str = include_str!("../../shaders/main.wgsl");
+const POINT: &str = include_str!("../../shaders/point.wgsl");
 const PLANE: &str = include_str!("../../shaders/plane.wgsl");
 const SPHERE: &str = include_str!("../../shaders/sphere.wgsl");
 const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
@@ -78,7 +81,10 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
         (SURFACE, features.any_object()),
         (WORLD, lit),
         (LIGHT, lit),
+        (CLOSEST, features.any_object()),
+        (POINT, features.any_object()),
         (TRACE, true),
+        (MAIN, true),
     ];
     let insert = |name: &str| match name {
         "procedural" => procedural.clone(),

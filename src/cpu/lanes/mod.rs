@@ -37,7 +37,7 @@ struct Constants {
     value_error: f32,
 }
 
-/// The closest hits of the lanes' rays so far, as `Hit` in `shaders/trace.wgsl`.
+/// The closest hits of the lanes' rays so far, as `Hit` in `shaders/closest.wgsl`.
 struct Closest {
     inverse: Lane,
     error: Lane,
@@ -57,7 +57,7 @@ impl Closest {
         }
     }
 
-    /// `nearer` in `shaders/trace.wgsl`, for an object that shares its surface with none.
+    /// `nearer` in `shaders/closest.wgsl`, for an object that shares its surface with none.
     #[inline(always)]
     fn nearer(
         &mut self,

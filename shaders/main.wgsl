@@ -1,0 +1,128 @@
+// The entry point: from pixels to rays, from colours to bytes and verdicts. Twin: src/cpu/pixel.rs.
+//#if partial
+
+// Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.
+fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
+    (*sum).color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), counts);
+    (*sum).error += select(vec3f(0.0), one.error * (1.01 / f32(SAMPLES)), counts) + 3.0 * U * (*sum).color;
+}
+//#end
+//#if quad
+
+// A pixel's bytes, and its verdict.
+fn make_pixel(pixel: vec2i) -> u32 {
+    let traced = ray_trace(camera_getdir(pixel));
+//#if certified
+    return camera_setpix(traced.color, traced.error) | traced.verdict;
+//#else
+    return camera_setpix(traced.color) | traced.verdict;
+//#end
+}
+
+// Four pixels side by side, as far as there are any: one store costs less than four.
+@compute @workgroup_size(WORKGROUP, WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let column = 4u * id.x;
+    if (column >= job.size.x) | (id.y >= job.size.y) {
+        return;
+    }
+    // Rows of the picture go down, y goes up.
+    let pixel = vec2i(i32(job.first.x + column), i32(job.first.y) - i32(id.y));
+    pixels[id.y * ((job.size.x + 3u) / 4u) + id.x] = vec4u(make_pixel(pixel), make_pixel(pixel + vec2i(1, 0)),
+        make_pixel(pixel + vec2i(2, 0)), make_pixel(pixel + vec2i(3, 0)));
+}
+//#else
+
+@compute @workgroup_size(WORKGROUP, WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= job.size) {
+        return;
+    }
+    // Rows of the picture go down, y goes up.
+    let pixel = vec2i(i32(job.first.x + id.x), i32(job.first.y) - i32(id.y));
+    let place = id.y * job.size.x + id.x;
+//#if any_object
+//#if samples
+    var traced: Traced;
+//#if partial
+    // The same of the samples that are worth keeping should the pixel be doubtful: their bits, and how many they are. What
+    // is not among them, for whatever reason, the CPU adds.
+    var part: Traced;
+    var summed: array<u32, SUMMED_WORDS>;
+    var kept = 0u;
+    var sure = 0u;
+//#end
+    for (var sample = 0u; sample < SAMPLES; sample += 1u) {
+        steps += 1u;
+//#if course
+        let offset = offsets[place * SAMPLES + sample];
+//#else
+        let offset = jitter_hash(pixel, sample);
+//#end
+        let one = ray_trace(camera_getdir(pixel, offset));
+//#if partial
+        let fine = (one.verdict == 0u) & all(one.error < vec3f(FINE));
+        add_sample(&traced, one, one.verdict == 0u);
+        add_sample(&part, one, fine);
+        summed[sample / 32u] |= select(0u, 1u << (sample % 32u), fine);
+        kept += select(0u, 1u, fine);
+        sure += select(0u, 1u, one.verdict == 0u);
+        if steps > STEPS_LIMIT {
+            break;
+        }
+//#else
+        traced.color += one.color * (1.0 / f32(SAMPLES));
+        traced.error += one.error * (1.01 / f32(SAMPLES)) + 3.0 * U * traced.color; //~
+        traced.verdict |= one.verdict;
+        if traced.verdict != 0u {
+            break;
+        }
+//#end
+    }
+//#if partial
+    traced.verdict = select(UNDECIDED, 0u, sure == SAMPLES);
+//#end
+//#else
+    let traced = ray_trace(camera_getdir(pixel));
+//#end
+//#else
+    let traced = Traced();
+//#end
+//#if certified
+//#if any_object
+    let bytes = camera_setpix(traced.color, traced.error) | traced.verdict;
+//#else
+    let bytes = 0u;
+//#end
+//#else
+    let bytes = camera_setpix(traced.color) | traced.verdict;
+//#end
+//#if partial
+    if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
+        let record = atomicAdd(&pixels.partials, 1u);
+        if record < job.room {
+            let first = job.size.x * job.size.y + record * PARTIAL_WORDS;
+            let color = bitcast<vec3u>(part.color);
+            let error = bitcast<vec3u>(part.error);
+            pixels.words[first] = place;
+            pixels.words[first + 1u] = color.x;
+            pixels.words[first + 2u] = color.y;
+            pixels.words[first + 3u] = color.z;
+            pixels.words[first + 4u] = error.x;
+            pixels.words[first + 5u] = error.y;
+            pixels.words[first + 6u] = error.z;
+            for (var i = 0u; i < SUMMED_WORDS; i += 1u) {
+                pixels.words[first + 7u + i] = summed[i];
+            }
+        }
+    }
+    pixels.words[place] = bytes;
+//#else
+//#if values
+    pixels[place] = vec4u(bitcast<vec3u>(traced.color), bytes);
+//#else
+    pixels[place] = bytes;
+//#end
+//#end
+}
+//#end

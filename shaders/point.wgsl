@@ -1,0 +1,116 @@
+// Where a ray hit, and what a surface is like there. Twin: locate in src/cpu/trace.rs.
+
+//#if lit
+
+// The primary ray as one from anywhere.
+fn primary_beam(ray: Ray) -> Beam {
+//#if certified
+    return Beam(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0);
+//#else
+    return Beam(vec3f(0.0), ray.w * ray.inverse_length);
+//#end
+}
+//#end
+
+// Where a primary ray hit.
+fn locate(ray: Ray, hit: Hit) -> Point {
+    var point: Point;
+    point.object = hit.object;
+//#if tables
+    point.pixel = ray.pixel;
+    point.direct = true;
+//#end
+//#if position
+    let s = 1.0 / hit.inverse;
+    point.position = ray.w * s;
+//#if certified
+    let length = ray.w2 * ray.inverse_length;
+    point.error = 1.01 * s * (W_ERROR + length * (s * hit.error + 5.0 * U));
+    point.size = abs(point.position.x) + abs(point.position.y) + abs(point.position.z);
+//#end
+//#end
+//#if lit
+    complete(&point);
+//#if sphere_point
+    if (objects[hit.object].place & SPHERE_BIT) != 0u {
+        on_sphere(&point, sphere_normal(hit.index, ray, hit));
+    }
+//#end
+//#if bvh
+//#if lit_sphere
+    if (objects[hit.object].place & SPHERE_BIT) != 0u {
+        on_sphere(&point, sphere_met(world_spheres[objects[hit.object].place & ~SPHERE_BIT], primary_beam(ray)));
+    }
+//#end
+//#end
+//#else
+//#if sphere_point
+    if (objects[hit.object].kind & 128u) != 0u {
+        let normal = sphere_normal(hit.index, ray, hit);
+        point.from_center = normal.xyz;
+        point.from_center_error = normal.w; //~
+    }
+//#end
+//#end
+    return point;
+}
+//#if lit
+
+const SPHERE_BIT = 0x80000000u;
+
+// Fills in what follows from the object alone, on a plane.
+fn complete(point: ptr<function, Point>) {
+    let object = objects[(*point).object];
+    (*point).group = object.group;
+//#if lit_plane
+    if (object.place & SPHERE_BIT) == 0u {
+        let plane = world_planes[object.place];
+        (*point).normal = plane.normal;
+        (*point).normal_error = 2.0 * U; //~
+        (*point).position = (*point).position * plane.keep + plane.own;
+//#if level
+        (*point).level = plane.level;
+//#end
+    }
+//#end
+}
+//#if lit_sphere
+
+// Takes the normal of a sphere, with the bound of its error.
+fn on_sphere(point: ptr<function, Point>, normal: vec4f) {
+    (*point).from_center = normal.xyz;
+    (*point).normal = normal.xyz;
+//#if certified
+    (*point).from_center_error = normal.w;
+    (*point).normal_error = normal.w;
+//#else
+    (*point).normal /= length3(normal.xyz);
+//#end
+}
+//#end
+
+// Where a ray from anywhere hit.
+fn locate_met(beam: Beam, met: Met) -> Point {
+    var point: Point;
+    point.object = met.object;
+    point.position = barrier(beam.base + met.t * beam.dir);
+//#if certified
+    point.error = 1.01 * (beam.base_error + met.t * beam.dir_error + met.error) + POSITION_ROUNDINGS * U * (beam.size + met.t);
+//#end
+    complete(&point);
+//#if sphere_beyond
+    let object = objects[met.object];
+    if (object.place & SPHERE_BIT) != 0u {
+        let sphere = world_spheres[object.place & ~SPHERE_BIT];
+        let normal = sphere_met(sphere, beam);
+        on_sphere(&point, normal);
+        point.position = barrier(sphere.center + sphere.radius * normal.xyz);
+        point.error = 1.01 * sphere.radius * normal.w + POSITION_ROUNDINGS * U * sphere.size; //~
+    }
+//#end
+//#if certified
+    point.size = abs(point.position.x) + abs(point.position.y) + abs(point.position.z);
+//#end
+    return point;
+}
+//#end
