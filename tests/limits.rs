@@ -77,7 +77,10 @@ fn too_many_planes_are_not_cut() {
     objects.push(wall(-1.0, 1));
     let scene = scene([2, 2], objects);
     let refused = render(&scene, &on(Backend::Gpu), &mut |_| Ok(())).unwrap_err();
-    assert!(refused.to_string().contains("70001 objects"), "{refused}");
+    assert!(
+        refused.to_string().contains("70001 planes and spheres"),
+        "{refused}"
+    );
     let (auto, report) = picture(&scene, &on(Backend::Auto));
     assert_eq!(report.backend, Backend::Cpu);
     assert!(report.fallback.unwrap().contains("so the CPU renders"));

@@ -231,7 +231,7 @@ impl Outlines {
         // (z² − r²), z the depth: docs/NUMERICS.md.
         let square = (depth - r) * (depth + r);
         let mut covered = everywhere;
-        for i in 0..2 {
+        for (i, covered) in covered.iter_mut().enumerate() {
             let side = if i == 0 { c.x } else { c.y };
             let root = r * (side * side + square).sqrt();
             let middle = side * depth;
@@ -253,7 +253,7 @@ impl Outlines {
             if low > last || high < 0.0 || low > high {
                 return None;
             }
-            covered[i] = [low.max(0.0) as u32, high.min(last) as u32];
+            *covered = [low.max(0.0) as u32, high.min(last) as u32];
         }
         Some((most, covered))
     }

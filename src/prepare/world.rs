@@ -261,7 +261,7 @@ fn lights_on_sphere(scene: &Scene, center: DVec3, radius: f64) -> Vec<usize> {
 pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
     let mut groups = Groups::default();
     let of = |object: &crate::scene::Object| match object.shape {
-        Shape::Sphere { .. } if !equal_spheres => groups.new(),
+        Shape::Sphere { .. } if !equal_spheres => groups.one_more(),
         _ => groups.of(&object.shape),
     };
     scene.objects.iter().map(of).collect()
@@ -302,13 +302,13 @@ impl Groups {
             }
         };
         if group == new {
-            self.new();
+            self.one_more();
         }
         group
     }
 
     /// The number of a surface that nothing shares.
-    fn new(&mut self) -> u32 {
+    fn one_more(&mut self) -> u32 {
         self.count += 1;
         self.count - 1
     }

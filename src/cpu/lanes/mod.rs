@@ -105,8 +105,8 @@ impl Closest {
         let fresh = self.group.map(|g| g != group);
         let both = |a: [bool; LANES]| std::array::from_fn(|i| a[i] & fresh[i]);
         self.nearer(inverse, error, &both(hit), &both(possible), object);
-        for i in 0..LANES {
-            if self.inverse[i] != before[i] {
+        for (i, before) in before.into_iter().enumerate() {
+            if self.inverse[i] != before {
                 self.group[i] = group;
             }
         }
