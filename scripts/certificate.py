@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""What certifying costs, scene by scene: python3 scripts/certificate.py [--size WxH] [SCENE...]
+"""What certifying costs, scene by scene.
 
 For each scene (all in scenes/ without any named): how many pixels the GPU left doubtful, exact ties apart; what decided
 them; whether the picture is the one of --backend cpu; kernel and whole frame over those of --precision fast, the best of
 three each. A Markdown table on stdout. Needs target/release/plumb.
 """
 
+import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 
@@ -34,13 +36,13 @@ def best(scene, size, precision):
 
 
 def main():
-    arguments = sys.argv[1:]
-    size = None
-    if arguments[:1] == ["--size"]:
-        size, arguments = arguments[1], arguments[2:]
-    scenes = [pathlib.Path(a) for a in arguments]
-    if not scenes:
-        scenes = sorted(p for p in ROOT.glob("scenes/**/*.txt") if p.parent.name not in ("errors",))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", metavar="WxH", help="columns and rows, in place of the scenes' own")
+    parser.add_argument("scene", nargs="*", type=pathlib.Path, help="scene files (all of ours that are right)")
+    arguments = parser.parse_args()
+    size = arguments.size
+    scenes = arguments.scene or sorted(p for p in ROOT.glob("scenes/**/*.txt") if p.parent.name != "errors")
+    ratios = []
     print("| scene | doubtful % | of these ties % | f64 | many bits | tie | presumed | as on the CPU | kernel × | frame × |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     total = {"pixels": 0, "doubtful": 0, "tie": 0, "presumed": 0, "scenes": 0, "differ": 0}
@@ -60,6 +62,7 @@ def main():
         total["presumed"] += decided["presumed"]
         total["differ"] += not same
         kernel = report["seconds"]["kernel"] / max(raw["seconds"]["kernel"], 1e-9)
+        ratios.append((100 * doubtful / pixels, kernel, frame / raw_frame))
         print(
             f"| {scene.stem} | {100 * (doubtful - decided['tie']) / pixels:.3f} | {100 * decided['tie'] / pixels:.3f} "
             f"| {decided['f64']} | {decided['multiprecision']} | {decided['tie']} | {decided['presumed']} "
@@ -67,6 +70,9 @@ def main():
             flush=True,
         )
     print(total, file=sys.stderr)
+    if ratios:
+        doubt, kernel, frame = map(statistics.median, zip(*ratios))
+        print(f"medians: {doubt:.2f} % doubtful, kernel {kernel:.2f} ×, frame {frame:.2f} ×", file=sys.stderr)
 
 
 if __name__ == "__main__":
