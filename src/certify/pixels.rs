@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::{Decided, Stage, Tally};
-use crate::cpu::lanes::{LANES, Lanes};
+use crate::certify::lanes::{LANES, Lanes};
 use crate::cpu::pixel::Stages;
 use crate::cpu::trace::Limits;
 use crate::frame::{Band, PixelFault};

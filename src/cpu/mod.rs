@@ -5,7 +5,6 @@
 pub mod bvh;
 pub mod camera;
 pub mod debug;
-pub mod lanes;
 pub mod light;
 pub mod pixel;
 pub mod plane;

@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use super::finish::{Digest, Finish, Stop, Wrong};
 use super::{Backend, Emit, Error, Report, Settings};
+use crate::certify::lanes::Lanes;
 use crate::certify::pixels::{Tracer, Wanted};
 use crate::certify::{Tally, trust};
-use crate::cpu::lanes::Lanes;
 use crate::frame::Band;
 use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;

@@ -1,6 +1,6 @@
 //! The GPU's arithmetic on the CPU: what it is sure of is right, and it is sure of nearly all.
 
-use plumb::cpu::lanes::{LANES, Lanes};
+use plumb::certify::lanes::{LANES, Lanes};
 use plumb::cpu::pixel::Stages;
 use plumb::gpu::pack::Packed;
 use plumb::jitter::Sampling;
