@@ -12,7 +12,7 @@
 //!                                            cpu: the same tracer in Rust ◄── certify ──────────┘       PPM / PNG / EXR
 //! ```
 //!
-//! [`render::render`] runs the whole of it, [`bench`] measures it; `src/cli/` only turns arguments into such calls.
+//! [`render::render`] runs the whole of it, [`mod@bench`] measures it; `src/cli/` only turns arguments into such calls.
 
 pub mod bench;
 pub mod certify;

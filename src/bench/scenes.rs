@@ -31,7 +31,7 @@ pub struct Asked {
 }
 
 impl Asked {
-    /// How many steps [`bench`] tells of.
+    /// How many steps [`bench()`] tells of.
     #[must_use]
     pub fn steps(&self) -> u64 {
         // A way is measured, and run as a process; before the others come, the truth is found out.

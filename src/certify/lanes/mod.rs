@@ -3,7 +3,7 @@
 //! For scenes without lights, a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a
 //! pixel that is sure here has its exact bytes; the others, and surfaces that are not plain or tiled, are left to
 //! [`Stages`](crate::cpu::pixel::Stages). What is computed is that of `shaders/` with `certified`, in loops that a compiler makes
-//! vectors of: here the closest hits, in [`shade`] their colours.
+//! vectors of: here the closest hits, in `shade` their colours.
 
 mod shade;
 

@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 pub struct Object {
     /// Ambient reflectivity of the material.
     pub ambient: [f32; 3],
-    /// [`Kind`] in the low byte, the index of its record above.
+    /// [`Kind`](super::Kind) in the low byte, the index of its record above.
     pub kind: u32,
 }
 
