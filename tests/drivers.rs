@@ -115,3 +115,45 @@ fn the_second_driver_passes_the_self_test() {
         assert!(check["failure"].is_null(), "{check}");
     }
 }
+
+/// A scene that takes more buffers than the second driver allows is the CPU's with `--backend auto`, and says so.
+#[test]
+fn a_scene_with_too_many_buffers_is_rendered_by_the_cpu() {
+    let second = second_driver();
+    let mut text = String::from(
+        "camera c { pixeldim 32 24 worlddim 8 6 viewpoint 4 3 6 }
+         material a { ambient 1 2 3 diffuse 3 3 3 specular .5 .5 .5 }
+         material g { ambient 1 1 1 diffuse 1 1 1 transparency 0.5 }
+         light l { location 4 9 2 emissivity 6 6 6 }
+         tiled_plane f { material a normal 0 1 0 point 0 -1 0 dimension 1 1 altmaterial g }
+         pplane p { material a normal 0 0 1 point 0 0 -30 shader 0 }
+         fplane r { material g normal 0 0 1 point 1 1 -2 xdir 1 0 0 dimensions 2 2 } ",
+    );
+    for i in 0..60 {
+        let (x, y) = (f64::from(i % 10) * 0.8, f64::from(i / 10));
+        text += &format!("sphere s{i} {{ material a center {x} {y} -5 radius 0.3 }} ");
+    }
+    let scene = Path::new(env!("CARGO_TARGET_TMPDIR")).join("many_buffers.txt");
+    std::fs::write(&scene, text).unwrap();
+    let rendered = |backend: &str, driver| {
+        let args = [
+            "render",
+            scene.to_str().unwrap(),
+            "-o",
+            "-",
+            "--backend",
+            backend,
+            "--json",
+        ];
+        let output = plumb(&args, driver);
+        let report: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+        (output.stdout, report)
+    };
+    let (auto, report) = rendered("auto", Some(&second));
+    assert_eq!(report["backend"], "cpu");
+    let fallback = report["fallback"].as_str().unwrap();
+    assert!(fallback.contains("buffers at once"), "{fallback}");
+    assert_eq!(auto, rendered("cpu", None).0);
+    let (gpu, report) = rendered("gpu", None);
+    assert_eq!((gpu == auto, &report["backend"]), (true, &"gpu".into()));
+}

@@ -50,6 +50,16 @@ pub enum GpuError {
         /// Name of the adapter.
         adapter: String,
     },
+    /// The scene needs more buffers at once than the adapter allows.
+    #[error("the scene needs {needed} buffers at once, and {adapter} allows {allowed}")]
+    TooManyBuffers {
+        /// How many it needs.
+        needed: u32,
+        /// How many there may be.
+        allowed: u32,
+        /// Name of the adapter.
+        adapter: String,
+    },
     /// More objects than the loops of the shader are sure to reach.
     #[error(
         "the scene has {found} planes and spheres to go through one by one, and a shader's loops are sure to reach {allowed} only"

@@ -38,6 +38,16 @@ impl Pipeline {
     ) -> Result<Self, GpuError> {
         let start = Instant::now();
         let buffers = upload(gpu, packed, features)?;
+        // These, the pixels, and perhaps the samples' offsets.
+        let needed = buffers.len() as u32 + 1 + u32::from(features.names().contains("course"));
+        let allowed = gpu.device.limits().max_storage_buffers_per_shader_stage;
+        if needed > allowed {
+            return Err(GpuError::TooManyBuffers {
+                needed,
+                allowed,
+                adapter: gpu.name.clone(),
+            });
+        }
         let upload_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let pipeline = gpu.compile(wgsl, "main")?;

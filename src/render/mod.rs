@@ -260,9 +260,11 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     };
     match done {
         // Found before the first band, so nothing is rendered twice.
-        Err(Error::Gpu(error @ (GpuError::TooMany { .. } | GpuError::TooLarge { .. })))
-            if settings.backend == Backend::Auto =>
-        {
+        Err(Error::Gpu(
+            error @ (GpuError::TooMany { .. }
+            | GpuError::TooLarge { .. }
+            | GpuError::TooManyBuffers { .. }),
+        )) if settings.backend == Backend::Auto => {
             report.fallback = Some(format!("{error}, so the CPU renders"));
             job.on_cpu(emit, &mut report)?;
         }
