@@ -63,56 +63,15 @@ fn run(wgsl: &str, input: &[u8], count: usize) -> Vec<DVec3> {
         usage: wgpu::BufferUsages::STORAGE,
     });
     let size = (count * size_of::<[f32; 4]>()) as u64;
-    let buffer = |label, usage| {
-        let descriptor = wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage,
-            mapped_at_creation: false,
-        };
-        gpu_device.create_buffer(&descriptor)
-    };
-    let answers = buffer(
-        "answers",
-        wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-    );
-    let staging = buffer(
-        "staging",
-        wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-    );
-    let bind_group = gpu_device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("test"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry {
-                binding: 100,
-                resource: inputs.as_entire_binding(),
-            },
-            wgpu::BindGroupEntry {
-                binding: 101,
-                resource: answers.as_entire_binding(),
-            },
-        ],
+    let answers = gpu_device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("answers"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
     });
-    let mut encoder = gpu_device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bind_group, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-    }
-    encoder.copy_buffer_to_buffer(&answers, 0, &staging, 0, size);
-    let index = gpu.queue.submit([encoder.finish()]);
-    staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    gpu_device
-        .poll(wgpu::PollType::Wait {
-            submission_index: Some(index),
-            timeout: None,
-        })
-        .unwrap();
-    gpu.check().unwrap();
-    let view = staging.get_mapped_range(..).unwrap();
-    view.chunks_exact(16)
+    let group = gpu.bind(&pipeline, &[(100, &inputs), (101, &answers)]);
+    let left = gpu.run_once(&pipeline, &group, [1, 1], &answers).unwrap();
+    left.chunks_exact(16)
         .map(bytemuck::pod_read_unaligned::<[f32; 4]>)
         .map(|[x, y, z, written]| {
             assert_eq!(written, 1.0, "an answer was not written");

@@ -213,6 +213,59 @@ impl Gpu {
         polled.map(|_| ()).map_err(|error| self.lost(&error))
     }
 
+    /// Binds buffers to a compiled shader, by the numbers of their bindings.
+    pub fn bind(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        buffers: &[(u32, &wgpu::Buffer)],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = buffers
+            .iter()
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("plumb"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        })
+    }
+
+    /// Runs a shader once, waits, and reads back what it left in `results`.
+    pub fn run_once(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        group: &wgpu::BindGroup,
+        [across, down]: [u32; 2],
+        results: &wgpu::Buffer,
+    ) -> Result<Vec<u8>, GpuError> {
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("staging"),
+            size: results.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(across, down, 1);
+        }
+        encoder.copy_buffer_to_buffer(results, 0, &staging, 0, results.size());
+        let index = self.queue.submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, .., |_| ());
+        self.wait(index)?;
+        let view = staging
+            .get_mapped_range(..)
+            .map_err(|error| self.lost(&error))?;
+        Ok(view.to_vec())
+    }
+
     /// The error of a device that does not answer as it should.
     pub fn lost(&self, reason: &impl ToString) -> GpuError {
         GpuError::Lost {

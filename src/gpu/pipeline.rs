@@ -1,5 +1,6 @@
 //! A composed shader compiled, and the packed scene in buffers bound to it.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use bytemuck::{Pod, Zeroable as _};
@@ -37,9 +38,10 @@ impl Pipeline {
         wgsl: &str,
     ) -> Result<Self, GpuError> {
         let start = Instant::now();
-        let buffers = upload(gpu, packed, features)?;
+        let names = features.names();
+        let buffers = upload(gpu, packed, &names)?;
         // These, the pixels, and perhaps the samples' offsets.
-        let needed = buffers.len() as u32 + 1 + u32::from(features.names().contains("course"));
+        let needed = buffers.len() as u32 + 1 + u32::from(names.contains("course"));
         let allowed = gpu.device.limits().max_storage_buffers_per_shader_stage;
         if needed > allowed {
             return Err(GpuError::TooManyBuffers {
@@ -54,13 +56,9 @@ impl Pipeline {
         let compile_seconds = start.elapsed().as_secs_f64();
         Ok(Self {
             pipeline,
-            across: if features.names().contains("quad") {
-                QUAD
-            } else {
-                1
-            },
+            across: if names.contains("quad") { QUAD } else { 1 },
             pixel_bytes: if features.values { 16 } else { 4 },
-            offsets: if features.names().contains("course") {
+            offsets: if names.contains("course") {
                 features.samples
             } else {
                 0
@@ -82,22 +80,11 @@ impl Pipeline {
         let own = [(0, job), (1, pixels)]
             .into_iter()
             .chain(offsets.map(|offsets| (16, offsets)));
-        let entries: Vec<_> = own
-            .chain(
-                self.buffers
-                    .iter()
-                    .map(|(binding, buffer)| (*binding, buffer)),
-            )
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("plumb"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        })
+        let scene = self
+            .buffers
+            .iter()
+            .map(|(binding, buffer)| (*binding, buffer));
+        gpu.bind(&self.pipeline, &own.chain(scene).collect::<Vec<_>>())
     }
 }
 
@@ -105,9 +92,8 @@ impl Pipeline {
 fn upload(
     gpu: &Gpu,
     packed: &Packed,
-    features: &FeatureSet,
+    names: &BTreeSet<&str>,
 ) -> Result<Vec<(u32, wgpu::Buffer)>, GpuError> {
-    let names = features.names();
     let mut buffers = Vec::new();
     let mut add =
         |name: &str, binding: u32, what: &'static str, bytes: &[u8]| -> Result<(), GpuError> {
@@ -116,14 +102,26 @@ fn upload(
             }
             Ok(())
         };
-    // The tables of indices, in the field `kind`.
-    let words = packed.tables.words.iter();
-    let mut objects = packed.objects.clone();
-    objects.extend(words.clone().map(|&kind| Object {
-        kind,
-        ..Object::zeroed()
-    }));
-    add("ambient_only", 2, "objects", bytes(&objects))?;
+    // The tables of indices stand behind the objects, in the field `kind`.
+    let tables = packed.tables.words.iter();
+    match &packed.lit {
+        None => {
+            let rows = tables.map(|&kind| Object {
+                kind,
+                ..Object::zeroed()
+            });
+            let objects: Vec<_> = packed.objects.iter().copied().chain(rows).collect();
+            add("ambient_only", 2, "objects", bytes(&objects))?;
+        }
+        Some(lit) => {
+            let rows = tables.map(|&kind| LitObject {
+                kind,
+                ..LitObject::zeroed()
+            });
+            let objects: Vec<_> = lit.objects.iter().copied().chain(rows).collect();
+            add("lit", 2, "objects", bytes(&objects))?;
+        }
+    }
     add("plane_loop", 3, "planes", bytes(&packed.planes))?;
     add(
         "rectangle_loop",
@@ -150,12 +148,6 @@ fn upload(
     add("textured", 10, "texplanes", bytes(&packed.texplanes))?;
     add("textured", 11, "texels", bytes(&packed.texels))?;
     if let Some(lit) = &packed.lit {
-        let mut objects = lit.objects.clone();
-        objects.extend(words.map(|&kind| LitObject {
-            kind,
-            ..LitObject::zeroed()
-        }));
-        add("lit", 2, "objects", bytes(&objects))?;
         add("lit", 12, "materials", bytes(&lit.materials))?;
         add("lit", 13, "lights", bytes(&lit.lights))?;
         add(

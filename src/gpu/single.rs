@@ -67,34 +67,15 @@ pub fn single(
             contents: bytemuck::bytes_of(&job),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-    let buffer = |usage| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("pixel"),
-            size: 32,
-            usage,
-            mapped_at_creation: false,
-        })
-    };
-    let pixels = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let staging = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let pixels = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("pixel"),
+        size: 32,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
     let group = pipeline.bind(gpu, &job, &pixels, None);
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-    }
-    encoder.copy_buffer_to_buffer(&pixels, 0, &staging, 0, 32);
-    let index = gpu.queue.submit([encoder.finish()]);
-    staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    gpu.wait(index)?;
-    let view = staging
-        .get_mapped_range(..)
-        .map_err(|error| gpu.lost(&error))?;
-    let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&view);
+    let left = gpu.run_once(&pipeline.pipeline, &group, [1, 1], &pixels)?;
+    let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&left);
     let three = |word: &[u32; 4]| [word[0], word[1], word[2]].map(f32::from_bits);
     let [value, error] = [0, 1].map(|i| words.get(i).map(three));
     // A pixel that is given up has no error bounds.

@@ -124,40 +124,19 @@ pub(crate) fn count(
             usage: wgpu::BufferUsages::UNIFORM,
         });
     let size = u64::from(pitch) * u64::from(height) * 4;
-    let empty = |usage| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("pixels"),
-            size,
-            usage,
-            mapped_at_creation: false,
-        })
-    };
-    let pixels = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let staging = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let bind_group = pipeline.bind(gpu, &job, &pixels, None);
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline.pipeline);
-        pass.set_bind_group(0, &bind_group, &[]);
-        let groups = [pitch / pipeline.across, height].map(|n| n.div_ceil(WORKGROUP));
-        pass.dispatch_workgroups(groups[0], groups[1], 1);
-    }
-    encoder.copy_buffer_to_buffer(&pixels, 0, &staging, 0, size);
-    gpu.queue.submit([encoder.finish()]);
-    staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    gpu.device
-        .poll(wgpu::PollType::Wait {
-            submission_index: None,
-            timeout: None,
-        })
+    let pixels = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("pixels"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    let group = pipeline.bind(gpu, &job, &pixels, None);
+    let groups = [pitch / pipeline.across, height].map(|n| n.div_ceil(WORKGROUP));
+    let left = gpu
+        .run_once(&pipeline.pipeline, &group, groups, &pixels)
         .unwrap();
-    gpu.check().unwrap();
-    let view = staging.get_mapped_range(..).unwrap();
     let mut count = Count::default();
-    let rows = view.chunks_exact(4 * pitch as usize);
+    let rows = left.chunks_exact(4 * pitch as usize);
     let found = rows.flat_map(|row| row[..4 * width as usize].chunks_exact(4));
     for (found, right) in found.zip(rgb.chunks_exact(3)) {
         count.pixels += 1;

@@ -181,16 +181,12 @@ pub(crate) fn run(
         })
     };
     let size = (count * vectors * 16) as u64;
-    let empty = |usage| {
-        device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("answers"),
-            size,
-            usage,
-            mapped_at_creation: false,
-        })
-    };
-    let answers = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let staging = empty(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let answers = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("answers"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
     let job = job();
     let mut buffers: Vec<(u32, wgpu::Buffer)> = inputs
         .iter()
@@ -206,39 +202,18 @@ pub(crate) fn run(
         .collect();
     let storage = wgpu::BufferUsages::STORAGE;
     buffers.push((100, filled(bytemuck::cast_slice(items), storage)));
-    let entries: Vec<_> = buffers
-        .iter()
-        .map(|(binding, buffer)| (*binding, buffer))
-        .chain([(101, &answers)])
-        .map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        })
-        .collect();
-    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("test"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bind_group, &[]);
-        pass.dispatch_workgroups((count as u32).div_ceil(64), 1, 1);
-    }
-    encoder.copy_buffer_to_buffer(&answers, 0, &staging, 0, size);
-    gpu.queue.submit([encoder.finish()]);
-    staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    device
-        .poll(wgpu::PollType::Wait {
-            submission_index: None,
-            timeout: None,
-        })
-        .unwrap();
-    gpu.check().unwrap_or_else(|error| panic!("{error}"));
-    let view = staging.get_mapped_range(..).unwrap();
-    bytemuck::cast_slice(&view).to_vec()
+    let bound = buffers.iter().map(|(binding, buffer)| (*binding, buffer));
+    let bound: Vec<_> = bound.chain([(101, &answers)]).collect();
+    let group = gpu.bind(&pipeline, &bound);
+    let left = gpu
+        .run_once(
+            &pipeline,
+            &group,
+            [(count as u32).div_ceil(64), 1],
+            &answers,
+        )
+        .unwrap_or_else(|error| panic!("{error}"));
+    bytemuck::pod_collect_to_vec(&left)
 }
 
 /// What `barrier` asks for.

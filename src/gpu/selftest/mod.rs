@@ -169,43 +169,18 @@ fn compute(gpu: &Gpu, pairs: &[[u32; 2]]) -> Result<Vec<u32>, GpuError> {
         })
     };
     let size = (RESULTS * pairs.len() * size_of::<u32>()) as u64;
-    let empty = |usage| {
-        device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("self-test"),
-            size,
-            usage,
-            mapped_at_creation: false,
-        })
-    };
     let operands = filled(bytemuck::cast_slice(pairs));
     let unknown = filled(&[0; 4]);
-    let results = empty(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let staging = empty(BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+    let results = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("self-test"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[(0, &operands), (1, &results), (2, &unknown)].map(|(binding, buffer)| {
-            wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            }
-        }),
+        size,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
     });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bind_group, &[]);
-        pass.dispatch_workgroups((pairs.len() / WORKGROUP) as u32, 1, 1);
-    }
-    encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, size);
-    let index = gpu.queue.submit([encoder.finish()]);
-    staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    gpu.wait(index)?;
-    let view = staging
-        .get_mapped_range(..)
-        .map_err(|error| gpu.lost(&error))?;
-    Ok(bytemuck::pod_collect_to_vec(&view[..]))
+    let group = gpu.bind(&pipeline, &[(0, &operands), (1, &results), (2, &unknown)]);
+    let groups = [(pairs.len() / WORKGROUP) as u32, 1];
+    let words = gpu.run_once(&pipeline, &group, groups, &results)?;
+    Ok(bytemuck::pod_collect_to_vec(&words))
 }
 
 /// Every check. The words are in the order in which the shader writes them.
