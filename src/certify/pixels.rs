@@ -157,7 +157,6 @@ impl<'a> Tracer<'a> {
         wanted: Wanted,
         lanes: Option<&Lanes>,
     ) -> Result<(Band, Tally), PixelFault> {
-        let stages = self.stages();
         let (width, top) = (self.width, rows.end - 1);
         let pixels = width * rows.len();
         let mut rgb = vec![0; 3 * pixels];
@@ -185,51 +184,14 @@ impl<'a> Tracer<'a> {
                     .zip(lines(verdicts, piece, count))
                     .enumerate()
                     .map(|(k, ((bytes, values), verdicts))| {
-                        let mut tally = Tally::default();
-                        let mut quick = 0;
-                        for (chunk, bytes) in bytes.chunks_mut(3 * LANES).enumerate() {
-                            let first = chunk * LANES;
-                            let x = k * piece + first;
-                            let eight = lanes.map(|lanes| lanes.row(x as u32, y));
-                            let eight = eight.unwrap_or_default();
-                            if let (true, Some(verdicts)) = (
-                                lanes.is_some(),
-                                verdicts.get_mut(first..first + bytes.len() / 3),
-                            ) {
-                                verdicts.fill(Stage::Single);
-                            }
-                            // Also those that are not sure: they are decided below.
-                            bytes.copy_from_slice(&eight.bytes.as_flattened()[..bytes.len()]);
-                            let sure = &eight.sure[..bytes.len() / 3];
-                            quick += sure.iter().filter(|sure| **sure).count();
-                            if eight.sure == [true; LANES] {
-                                continue;
-                            }
-                            for (lane, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                                let (i, x) = (first + lane, x + lane);
-                                if sure[lane] {
-                                    continue;
-                                }
-                                let sampling = self.jitter.pixel(offsets.as_deref(), width, x);
-                                let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
-                                let samples = sampling.samples();
-                                tally.decided(
-                                    decided.stage,
-                                    [x as u32, y],
-                                    samples,
-                                    Duration::ZERO,
-                                );
-                                pixel.copy_from_slice(&decided.bytes);
-                                if let Some(value) = values.get_mut(i) {
-                                    *value = decided.value;
-                                }
-                                if let Some(verdict) = verdicts.get_mut(i) {
-                                    *verdict = decided.stage;
-                                }
-                            }
-                        }
-                        tally.add(Stage::Single, quick as u64);
-                        Ok(tally)
+                        let strip = Strip {
+                            first: k * piece,
+                            y,
+                            bytes,
+                            values,
+                            verdicts,
+                        };
+                        self.strip(strip, offsets.as_deref(), lanes)
                     })
                     .try_reduce(Tally::default, |a, b| Ok(a.merge(b)))
             })
@@ -242,6 +204,66 @@ impl<'a> Tracer<'a> {
         };
         Ok((band, tally))
     }
+
+    /// Decides the pixels of a strip, whose row has these offsets.
+    fn strip(
+        &self,
+        strip: Strip<'_>,
+        offsets: Option<&[[f64; 2]]>,
+        lanes: Option<&Lanes>,
+    ) -> Result<Tally, PixelFault> {
+        let Strip {
+            first,
+            y,
+            bytes,
+            values,
+            verdicts,
+        } = strip;
+        let stages = self.stages();
+        let mut tally = Tally::default();
+        for (chunk, bytes) in bytes.chunks_mut(3 * LANES).enumerate() {
+            let start = chunk * LANES;
+            let eight = lanes.map(|lanes| lanes.row((first + start) as u32, y));
+            let eight = eight.unwrap_or_default();
+            // Also those that are not sure: they are decided below.
+            bytes.copy_from_slice(&eight.bytes.as_flattened()[..bytes.len()]);
+            let sure = &eight.sure[..bytes.len() / 3];
+            let quick = sure.iter().filter(|sure| **sure).count();
+            tally.add(Stage::Single, quick as u64);
+            if quick == LANES && verdicts.is_empty() {
+                continue;
+            }
+            for (lane, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                let (i, x) = (start + lane, first + start + lane);
+                let mut stage = Stage::Single;
+                if !sure[lane] {
+                    let sampling = self.jitter.pixel(offsets, self.width, x);
+                    let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
+                    stage = decided.stage;
+                    let at = [x as u32, y];
+                    tally.decided(stage, at, sampling.samples(), Duration::ZERO);
+                    pixel.copy_from_slice(&decided.bytes);
+                    if let Some(value) = values.get_mut(i) {
+                        *value = decided.value;
+                    }
+                }
+                if let Some(verdict) = verdicts.get_mut(i) {
+                    *verdict = stage;
+                }
+            }
+        }
+        Ok(tally)
+    }
+}
+
+/// Pixels side by side, to be decided: values and verdicts only where they are wanted.
+struct Strip<'a> {
+    /// Column of the first.
+    first: usize,
+    y: u32,
+    bytes: &'a mut [u8],
+    values: &'a mut [[f32; 3]],
+    verdicts: &'a mut [Stage],
 }
 
 /// Pieces of `size`, or as many empty ones.
