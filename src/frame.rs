@@ -19,6 +19,9 @@ pub struct Band {
 /// Takes finished bands; an error ends the rendering.
 pub type Emit<'a> = dyn FnMut(&Band) -> io::Result<()> + Send + 'a;
 
+/// Asked now and then by whoever renders: whether nobody wants the picture any more.
+pub type Stop<'a> = dyn Fn() -> bool + Sync + 'a;
+
 /// What decided a pixel, from the cheapest to the dearest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
@@ -93,6 +96,17 @@ impl Part<'_> {
     pub fn samples(&self) -> u32 {
         self.summed.iter().map(|word| word.count_ones()).sum()
     }
+}
+
+/// Why pixels were not decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Halt {
+    /// One of them needs more rays than allowed.
+    #[error(transparent)]
+    TooManyRays(#[from] PixelFault),
+    /// Nobody wants them any more.
+    #[error("given up")]
+    Stopped,
 }
 
 /// A pixel that needs more rays than allowed.

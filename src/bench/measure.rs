@@ -214,6 +214,8 @@ impl Subject<'_> {
         let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
         let [width, height] = self.scene.camera.pixeldim;
         let frame = bands::Frame {
+            dispatch_seconds: bands::DISPATCH_SECONDS,
+            canvas: None,
             width,
             rows: 0..height,
             tests: packed.tests(),
@@ -221,7 +223,9 @@ impl Subject<'_> {
             band_rows: None,
         };
         let run = || -> Result<f64, Unmeasured> {
-            let times = bands::run(gpu, &pipeline, &frame, &mut |_| ControlFlow::Continue(()))?;
+            let times = bands::run(gpu, &pipeline, &frame, &|| false, &mut |_| {
+                ControlFlow::Continue(())
+            })?;
             Ok(times.kernel)
         };
         self.times(run()?, run)

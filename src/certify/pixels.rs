@@ -10,7 +10,7 @@ use super::{Decided, Stage, Tally};
 use crate::certify::lanes::{LANES, Lanes};
 use crate::cpu::pixel::Stages;
 use crate::cpu::trace::Limits;
-use crate::frame::{Band, PixelFault};
+use crate::frame::{Band, Halt, Stop};
 use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::prepare::View;
@@ -32,6 +32,7 @@ pub struct Tracer<'a> {
     width: usize,
     /// Whether the values before quantising are wanted, to the last bit of f32.
     values: bool,
+    stop: &'a Stop<'a>,
     stages: OnceLock<Stages<'a>>,
 }
 
@@ -61,8 +62,15 @@ impl<'a> Tracer<'a> {
             jitter,
             width: width as usize,
             values,
+            stop: &|| false,
             stages: OnceLock::new(),
         }
+    }
+
+    /// Asks now and then whether to give up.
+    #[must_use]
+    pub fn stopping(self, stop: &'a Stop<'a>) -> Self {
+        Self { stop, ..self }
     }
 
     /// Prepares the scene, if that was not done yet.
@@ -78,7 +86,7 @@ impl<'a> Tracer<'a> {
         top: u32,
         places: &[u32],
         known: &Partials,
-    ) -> Result<(Vec<Decided>, Tally), PixelFault> {
+    ) -> Result<(Vec<Decided>, Tally), Halt> {
         let width = self.width as u32;
         // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
         let rows = places.chunk_by(|a, b| a / width == b / width);
@@ -122,7 +130,10 @@ impl<'a> Tracer<'a> {
         offsets: Option<&[[f64; 2]]>,
         places: &[u32],
         known: &Partials,
-    ) -> Result<(Vec<Decided>, Tally), PixelFault> {
+    ) -> Result<(Vec<Decided>, Tally), Halt> {
+        if (self.stop)() {
+            return Err(Halt::Stopped);
+        }
         let stages = self.stages();
         let mut tally = Tally::default();
         let mut all = Vec::with_capacity(places.len());
@@ -156,7 +167,7 @@ impl<'a> Tracer<'a> {
         rows: Range<u32>,
         wanted: Wanted,
         lanes: Option<&Lanes>,
-    ) -> Result<(Band, Tally), PixelFault> {
+    ) -> Result<(Band, Tally), Halt> {
         let (width, top) = (self.width, rows.end - 1);
         let pixels = width * rows.len();
         let mut rgb = vec![0; 3 * pixels];
@@ -211,7 +222,10 @@ impl<'a> Tracer<'a> {
         strip: Strip<'_>,
         offsets: Option<&[[f64; 2]]>,
         lanes: Option<&Lanes>,
-    ) -> Result<Tally, PixelFault> {
+    ) -> Result<Tally, Halt> {
+        if (self.stop)() {
+            return Err(Halt::Stopped);
+        }
         let Strip {
             first,
             y,

@@ -6,12 +6,11 @@ use std::thread;
 use std::time::Instant;
 
 use super::finish::{Digest, Finish, Stop, Wrong};
-use super::{Backend, Emit, Error, Report, Settings};
+use super::{Backend, Emit, Error, Live, Report, Settings};
 use crate::certify::lanes::Lanes;
 use crate::certify::pixels::{Tracer, Wanted};
 use crate::certify::{Tally, trust};
 use crate::frame::Band;
-use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;
 use crate::gpu::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
@@ -37,10 +36,11 @@ impl Job<'_> {
     /// rendered. Where it turns out to be wrong all is done again on the CPU.
     pub(super) fn on_gpu(
         &self,
-        gpu: &Gpu,
+        live: &Live<'_>,
         emit: &mut Emit<'_>,
         report: &mut Report,
     ) -> Result<(), Error> {
+        let gpu = live.gpu;
         let start = Instant::now();
         // Prepared once, for the GPU and for the pixels that the CPU decides.
         let stages = self.on_threads(|| self.tracer.stages());
@@ -69,9 +69,11 @@ impl Job<'_> {
             tests: packed.tests() * self.settings.samples as usize,
             jitter: self.jitter,
             band_rows: self.settings.band_rows,
+            dispatch_seconds: live.dispatch_seconds,
+            canvas: live.canvas,
         };
         let mut finish = Finish::new(self.tracer, emit, certified, self.settings.verdicts);
-        let ended = self.in_step(gpu, &pipeline, &frame, &mut finish, report);
+        let ended = self.in_step(live, &pipeline, &frame, &mut finish, report);
         report.backend = Backend::Gpu;
         report.adapter = Some(gpu.name.clone());
         report.bands = finish.bands;
@@ -95,7 +97,7 @@ impl Job<'_> {
     /// The GPU's side on this thread, `finish` on another: at most one band is being finished while one waits.
     fn in_step(
         &self,
-        gpu: &Gpu,
+        live: &Live<'_>,
         pipeline: &Pipeline,
         frame: &bands::Frame<'_>,
         finish: &mut Finish<'_, '_, '_>,
@@ -112,10 +114,16 @@ impl Job<'_> {
                         .try_for_each(|band| self.on_threads(|| finish.band(band)))
                 })
                 .map_err(|error| Error::Threads(error.to_string()))?;
-            let rendered = bands::run(gpu, pipeline, frame, &mut |band| match sender.send(band) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(_) => ControlFlow::Break(()),
-            });
+            let rendered = bands::run(
+                live.gpu,
+                pipeline,
+                frame,
+                live.stop,
+                &mut |band| match sender.send(band) {
+                    Ok(()) => ControlFlow::Continue(()),
+                    Err(_) => ControlFlow::Break(()),
+                },
+            );
             drop(sender);
             match finisher.join() {
                 Ok(finished) => finished?,
@@ -123,6 +131,9 @@ impl Job<'_> {
             }
             Ok::<_, Stop>(rendered?)
         })?;
+        if (live.stop)() {
+            return Err(Error::Stopped.into());
+        }
         report.seconds.kernel = rendered.kernel;
         report.seconds.readback = rendered.readback;
         report.seconds.held = rendered.held;

@@ -14,13 +14,16 @@ use serde::Serialize;
 
 use crate::certify::pixels::Tracer;
 use crate::certify::{Stage, StageSeconds, Tally, trust};
+use crate::gpu::bands::DISPATCH_SECONDS;
+use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
 use crate::gpu::{self, GpuError};
 use crate::prepare::View;
 use crate::scene::Scene;
 use job::Job;
 
-pub use crate::frame::{Band, Emit, PixelFault};
+use crate::frame::Halt;
+pub use crate::frame::{Band, Emit, PixelFault, Stop};
 pub use crate::settings::{Backend, Precision, Settings, Spread};
 
 /// How a rendering went: what `--json` prints.
@@ -79,6 +82,46 @@ pub struct Report {
 }
 
 impl Report {
+    /// Of a rendering that is about to begin.
+    fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        let [width, height] = scene.camera.pixeldim;
+        let rows = settings.rows.clone().unwrap_or(0..height);
+        if rows.is_empty() || rows.end > height {
+            return Err(Error::Rows {
+                start: rows.start,
+                end: rows.end,
+                height,
+            });
+        }
+        Ok(Self {
+            width,
+            height,
+            rows: [rows.start, rows.end],
+            screen_tolerance: settings.screen_tolerance,
+            samples: settings.samples,
+            jitter: (settings.samples > 1).then_some(settings.jitter),
+            max_path: (!scene.lights.is_empty()).then_some(settings.limits.max_path),
+            precision: settings.precision,
+            backend: Backend::Cpu,
+            adapter: None,
+            fallback: None,
+            revoked: None,
+            threads: None,
+            pixels: 0,
+            refined: 0,
+            refined_percent: 0.0,
+            refined_samples: 0,
+            refined_samples_percent: 0.0,
+            decided: Tally::default(),
+            ties: 0,
+            presumed: 0,
+            presumed_at: Vec::new(),
+            spot_checks: 0,
+            bands: 0,
+            seconds: Seconds::default(),
+        })
+    }
+
     /// Takes over what decided the pixels.
     fn count(&mut self, tally: &Tally) {
         self.pixels = tally.pixels();
@@ -166,9 +209,45 @@ pub enum Error {
     /// The GPU was sure of a pixel and wrong, and so are rows that were handed on before that was found.
     #[error("{0}; rows that were handed on before are wrong too")]
     Revoked(String),
+    /// [`Live::stop`] said that nobody wants the picture any more.
+    #[error("the rendering was given up")]
+    Stopped,
     /// What takes the bands said no.
     #[error(transparent)]
     Emit(#[from] io::Error),
+}
+
+impl From<Halt> for Error {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::TooManyRays(fault) => fault.into(),
+            Halt::Stopped => Self::Stopped,
+        }
+    }
+}
+
+/// What a picture is rendered with by whoever renders many: a device that is open, and a say in whether it goes on.
+pub struct Live<'a> {
+    /// The device; `Settings::adapter` means nothing then.
+    pub gpu: &'a Gpu,
+    /// Where the picture is shown, on the GPU: all pixels that the GPU makes are copied there.
+    pub canvas: Option<&'a Canvas>,
+    /// About how many seconds a dispatch is to take: whatever else wants the device has to wait for so long.
+    pub dispatch_seconds: f64,
+    /// Whether nobody wants the picture any more; asked every few thousand pixels.
+    pub stop: &'a Stop<'a>,
+}
+
+impl<'a> Live<'a> {
+    /// On this device, and to its end.
+    pub fn on(gpu: &'a Gpu) -> Self {
+        Self {
+            gpu,
+            canvas: None,
+            dispatch_seconds: DISPATCH_SECONDS,
+            stop: &|| false,
+        }
+    }
 }
 
 /// What to install where there is no adapter.
@@ -189,53 +268,62 @@ pub fn install_hint() -> &'static str {
 /// Any [`Error`]. After [`Error::Revoked`] alone what was handed on is wrong, and the CPU will do better.
 pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result<Report, Error> {
     let start = Instant::now();
-    let [width, height] = scene.camera.pixeldim;
-    let rows = settings.rows.clone().unwrap_or(0..height);
-    if rows.is_empty() || rows.end > height {
-        return Err(Error::Rows {
-            start: rows.start,
-            end: rows.end,
-            height,
-        });
-    }
-    let mut report = Report {
-        width,
-        height,
-        rows: [rows.start, rows.end],
-        screen_tolerance: settings.screen_tolerance,
-        samples: settings.samples,
-        jitter: (settings.samples > 1).then_some(settings.jitter),
-        max_path: (!scene.lights.is_empty()).then_some(settings.limits.max_path),
-        precision: settings.precision,
-        backend: Backend::Cpu,
-        adapter: None,
-        fallback: None,
-        revoked: None,
-        threads: None,
-        pixels: 0,
-        refined: 0,
-        refined_percent: 0.0,
-        refined_samples: 0,
-        refined_samples_percent: 0.0,
-        decided: Tally::default(),
-        ties: 0,
-        presumed: 0,
-        presumed_at: Vec::new(),
-        spot_checks: 0,
-        bands: 0,
-        seconds: Seconds::default(),
+    let mut report = Report::new(scene, settings)?;
+    let opened = if wants_gpu(settings, &mut report)? {
+        let opened = gpu::device::open(settings.adapter.as_deref());
+        trusted(opened, |gpu| gpu, settings, &mut report)?
+    } else {
+        None
     };
-    let gpu = open_gpu(settings, &mut report)?;
+    let live = opened.as_ref().map(Live::on);
+    run(scene, settings, live.as_ref(), &|| false, emit, &mut report)?;
+    report.seconds.total = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// The same on a device that is open already, for whoever renders many pictures.
+///
+/// # Errors
+/// As [`render`]; and [`Error::Stopped`].
+pub fn render_live(
+    scene: &Scene,
+    settings: &Settings,
+    live: &Live<'_>,
+    emit: &mut Emit<'_>,
+) -> Result<Report, Error> {
+    let start = Instant::now();
+    let mut report = Report::new(scene, settings)?;
+    let gpu = if wants_gpu(settings, &mut report)? {
+        trusted(Ok(live), |live| live.gpu, settings, &mut report)?
+    } else {
+        None
+    };
+    run(scene, settings, gpu, live.stop, emit, &mut report)?;
+    report.seconds.total = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// Renders on the GPU that is given, else on the CPU.
+fn run(
+    scene: &Scene,
+    settings: &Settings,
+    gpu: Option<&Live<'_>>,
+    stop: &Stop<'_>,
+    emit: &mut Emit<'_>,
+    report: &mut Report,
+) -> Result<(), Error> {
+    let [start, end] = report.rows;
     let view = View::new(settings.screen_tolerance, settings.samples);
-    let jitter = settings.sampling(width, rows.end);
+    let jitter = settings.sampling(report.width, end);
     let tracer = Tracer::new(
         scene,
         view,
         settings.sample_limits(),
         &jitter,
-        width,
+        report.width,
         settings.values,
-    );
+    )
+    .stopping(stop);
     let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build();
     let pool = settings.threads.map(threads).transpose();
     let pool = pool.map_err(|error| Error::Threads(error.to_string()))?;
@@ -250,13 +338,13 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
         jitter: &jitter,
         tracer: &tracer,
         pool: pool.as_ref(),
-        width,
-        rows,
+        width: report.width,
+        rows: start..end,
         settings,
     };
     let done = match gpu {
-        Some(gpu) => job.on_gpu(&gpu, emit, &mut report),
-        None => job.on_cpu(emit, &mut report),
+        Some(live) => job.on_gpu(live, emit, report),
+        None => job.on_cpu(emit, report),
     };
     match done {
         // Found before the first band, so nothing is rendered twice.
@@ -266,18 +354,16 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
             | GpuError::TooManyBuffers { .. }),
         )) if settings.backend == Backend::Auto => {
             report.fallback = Some(format!("{error}, so the CPU renders"));
-            job.on_cpu(emit, &mut report)?;
+            job.on_cpu(emit, report)
         }
-        done => done?,
+        done => done,
     }
-    report.seconds.total = start.elapsed().as_secs_f64();
-    Ok(report)
 }
 
-/// The GPU to render on; none if the CPU is to, and why.
-fn open_gpu(settings: &Settings, report: &mut Report) -> Result<Option<Gpu>, Error> {
+/// Whether the GPU is to render, if there is one that can be trusted.
+fn wants_gpu(settings: &Settings, report: &mut Report) -> Result<bool, Error> {
     if settings.backend == Backend::Cpu {
-        return Ok(None);
+        return Ok(false);
     }
     if settings.values && settings.precision == Precision::Certified {
         if settings.backend == Backend::Gpu {
@@ -287,26 +373,36 @@ fn open_gpu(settings: &Settings, report: &mut Report) -> Result<Option<Gpu>, Err
             "certified values are computed on the CPU, all of them; --precision fast takes the GPU's own f32"
                 .into(),
         );
-        return Ok(None);
+        return Ok(false);
     }
-    let opened = gpu::device::open(settings.adapter.as_deref()).and_then(|gpu| {
+    Ok(true)
+}
+
+/// The GPU that was opened if it can be trusted; none if the CPU is to render, and why.
+fn trusted<T>(
+    opened: Result<T, GpuError>,
+    gpu: impl Fn(&T) -> &Gpu,
+    settings: &Settings,
+    report: &mut Report,
+) -> Result<Option<T>, Error> {
+    let tested = opened.and_then(|opened| {
         let start = Instant::now();
         let doubts = if settings.precision == Precision::Certified {
-            trust::doubts(&gpu, settings.cache.as_deref())
+            trust::doubts(gpu(&opened), settings.cache.as_deref())
         } else {
             None
         };
         report.seconds.selftest = start.elapsed().as_secs_f64();
         match doubts {
-            None => Ok(gpu),
+            None => Ok(opened),
             Some(failures) => Err(GpuError::Untrusted {
-                adapter: gpu.name,
+                adapter: gpu(&opened).name.clone(),
                 failures,
             }),
         }
     });
-    match opened {
-        Ok(gpu) => Ok(Some(gpu)),
+    match tested {
+        Ok(opened) => Ok(Some(opened)),
         Err(error @ GpuError::Untrusted { .. }) if settings.backend == Backend::Auto => {
             report.fallback = Some(format!("{error}; the CPU renders"));
             Ok(None)

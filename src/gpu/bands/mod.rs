@@ -10,9 +10,11 @@ use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 
 use super::GpuError;
+use super::canvas::Canvas;
 use super::compose::WORKGROUP;
 use super::device::Gpu;
 use super::pipeline::Pipeline;
+use crate::frame::Stop;
 use crate::jitter::Jitter;
 use assembly::Assembly;
 use plan::Plan;
@@ -25,6 +27,8 @@ pub use partial::Partials;
 const MAX_PIXELS: u64 = 2 << 20;
 /// Most bytes of sample offsets of one dispatch.
 const MAX_OFFSETS: u64 = 32 << 20;
+/// Seconds that a dispatch should take where nothing else waits for the device.
+pub const DISPATCH_SECONDS: f64 = 0.15;
 /// Bytes of a sample's offset.
 const OFFSET_BYTES: u64 = 8;
 
@@ -54,14 +58,19 @@ pub struct Frame<'a> {
     pub jitter: &'a Jitter,
     /// Rows of a band, if that was asked for.
     pub band_rows: Option<u32>,
+    /// About how many seconds a dispatch is to take.
+    pub dispatch_seconds: f64,
+    /// Where the pixels are shown, on the GPU.
+    pub canvas: Option<&'a Canvas>,
 }
 
 /// Renders the frame from the top row down, and hands each band on: while that is waited for, the next two dispatches are
-/// on the GPU already. Ends early where `hand_on` breaks off.
+/// on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
+    stop: &Stop<'_>,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
 ) -> Result<BandTimes, GpuError> {
     let (width, rows) = (frame.width, frame.rows.clone());
@@ -74,12 +83,22 @@ pub fn run(
         Slot::new(gpu, pipeline, filled),
     ];
     gpu.check()?;
-    let mut plan = Plan::new(width, rows, largest, frame.tests, frame.band_rows);
+    let mut plan = Plan::new(
+        width,
+        rows,
+        largest,
+        frame.tests,
+        frame.band_rows,
+        frame.dispatch_seconds,
+    );
     let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
     let mut times = BandTimes::default();
     let mut next = 0;
     let mut open = 0;
     loop {
+        if stop() {
+            return Ok(times);
+        }
         let rectangle = plan.next();
         let mut finished = None;
         if open == 2 || (rectangle.is_none() && open > 0) {
@@ -92,7 +111,7 @@ pub fn run(
         }
         let done = rectangle.is_none() && open == 0;
         if let Some(rectangle) = rectangle {
-            slots[next].submit(gpu, pipeline, frame.jitter, rectangle);
+            slots[next].submit(gpu, pipeline, frame, rectangle);
             next = 1 - next;
             open += 1;
             times.dispatches += 1;

@@ -5,10 +5,9 @@ use std::ops::Range;
 use super::super::compose::WORKGROUP;
 use crate::jitter::Jitter;
 
-/// A dispatch is made larger or smaller so that it takes about this long.
-const TARGET_SECONDS: f64 = 0.15;
-/// Ray–object tests of the first dispatch, whose speed is not known yet: a tenth of a second on two CPU cores.
-const FIRST_TESTS: u64 = 8 << 20;
+/// Ray–object tests of the first dispatch, whose speed is not known yet, for each second that it may take: what two CPU cores
+/// do at least.
+const FIRST_TESTS: f64 = 56e6;
 /// What a pixel costs beside its objects, in tests.
 const PIXEL_TESTS: u64 = 8;
 
@@ -51,6 +50,8 @@ pub(super) struct Plan {
     pixels: u64,
     /// Rows of a band, if that was asked for.
     band_rows: Option<u32>,
+    /// A dispatch is made larger or smaller so that it takes about so many seconds.
+    seconds: f64,
     /// The band under way and its next column.
     pub(super) band: Option<(Range<u32>, u32)>,
 }
@@ -62,21 +63,24 @@ impl Plan {
         largest: u64,
         tests: usize,
         band_rows: Option<u32>,
+        seconds: f64,
     ) -> Self {
-        let pixels = (FIRST_TESTS / (tests as u64 + PIXEL_TESTS)).clamp(1, largest);
+        let first = (FIRST_TESTS * seconds) as u64;
+        let pixels = (first / (tests as u64 + PIXEL_TESTS)).clamp(1, largest);
         Self {
             width,
             rows,
             largest,
             pixels,
             band_rows,
+            seconds,
             band: None,
         }
     }
 
     /// Learns that a dispatch of so many pixels took so long.
     pub(super) fn took(&mut self, pixels: u64, seconds: f64) {
-        let ideal = pixels as f64 * TARGET_SECONDS / seconds.max(1e-6);
+        let ideal = pixels as f64 * self.seconds / seconds.max(1e-6);
         // Carefully: one measurement says little, and the next rectangle may be of another kind.
         let (least, most) = (self.pixels as f64 / 4.0, self.pixels as f64 * 4.0);
         self.pixels = (ideal.clamp(least, most) as u64).clamp(1, self.largest);
@@ -145,7 +149,7 @@ mod tests {
         seconds: &dyn Fn(u64) -> f64,
         band_rows: Option<u32>,
     ) {
-        let mut plan = Plan::new(width, rows.clone(), largest, tested, band_rows);
+        let mut plan = Plan::new(width, rows.clone(), largest, tested, band_rows, 0.15);
         let mut top = rows.end;
         let mut column = 0;
         while let Some(r) = plan.next() {
@@ -185,7 +189,7 @@ mod tests {
 
     #[test]
     fn a_slow_scene_gets_small_dispatches() {
-        let mut plan = Plan::new(1000, 0..1000, MAX_PIXELS, 3, None);
+        let mut plan = Plan::new(1000, 0..1000, MAX_PIXELS, 3, None, 0.15);
         for _ in 0..10 {
             let Some(r) = plan.next() else { break };
             plan.took(r.pixels(), r.pixels() as f64 * 1e-4);

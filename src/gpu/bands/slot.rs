@@ -10,8 +10,7 @@ use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::partial;
 use super::plan::Rectangle;
-use super::{BandTimes, OFFSET_BYTES};
-use crate::jitter::Jitter;
+use super::{BandTimes, Frame, OFFSET_BYTES};
 
 /// Buffers for one dispatch under way.
 #[derive(Debug)]
@@ -103,7 +102,7 @@ impl Slot {
         &mut self,
         gpu: &Gpu,
         pipeline: &Pipeline,
-        jitter: &Jitter,
+        frame: &Frame<'_>,
         rectangle: Rectangle,
     ) {
         let columns = rectangle.columns.end - rectangle.columns.start;
@@ -122,7 +121,7 @@ impl Slot {
             gpu.queue.write_buffer(
                 offsets,
                 0,
-                bytemuck::cast_slice(&rectangle.offsets(jitter, pipeline.offsets)),
+                bytemuck::cast_slice(&rectangle.offsets(frame.jitter, pipeline.offsets)),
             );
         }
         let mut encoder = gpu
@@ -151,6 +150,19 @@ impl Slot {
         }
         let bytes = layout.bytes;
         encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.staging, 0, bytes);
+        if let Some(canvas) = frame.canvas {
+            let (at, size) = (
+                [rectangle.columns.start, rectangle.band.end],
+                [columns, rows],
+            );
+            canvas.take(
+                &mut encoder,
+                (&self.pixels, layout.counter),
+                pitch,
+                at,
+                size,
+            );
+        }
         if let Some(clock) = &self.clock {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
             encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
