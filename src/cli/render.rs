@@ -2,7 +2,6 @@
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -12,7 +11,7 @@ use plumb::cpu::pixel::Stages;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, PixelFault, Report, Settings};
-use plumb::scene::{Scene, list_model, remarks};
+use plumb::scene::{Scene, is_same_file, list_model, remarks};
 use serde::Serialize;
 
 use super::args::RenderOptions;
@@ -144,25 +143,10 @@ impl<'a> Job<'a> {
                 }
             }
             Target::Path(path) => {
-                if self
-                    .file
-                    .is_some_and(|scene| source::is_same_file(path, scene))
-                {
+                if let Some(what) = self.scene.is_made_from(self.file, path) {
                     bail!(
-                        "{} is the scene itself: give the picture another name with -o",
+                        "{} is {what}: give the picture another name with -o",
                         path.display()
-                    );
-                }
-                if let Some(texture) = self
-                    .scene
-                    .textures
-                    .iter()
-                    .find(|texture| source::is_same_file(path, &texture.path))
-                {
-                    bail!(
-                        "{} is the scene's texture `{}`: give the picture another name",
-                        path.display(),
-                        texture.name
                     );
                 }
             }
@@ -184,14 +168,12 @@ impl<'a> Job<'a> {
         let format = target.format()?;
         let settings = self.options.settings(&self.scene, format.wants_values())?;
         self.check(&target)?;
-        let [_, height] = self.scene.camera.pixeldim;
-        let rows = settings.rows.clone().unwrap_or(0..height);
-        let mut outputs = self.open(&target, format, &rows)?;
+        let mut outputs = self.open(&target, format, &settings)?;
         let rendered = match self.render(&settings, &mut outputs) {
             // What is written beside can be begun anew; what was written through cannot be taken back.
             Err(render::Error::Revoked(revoked)) if outputs.can_restart() => {
                 drop(outputs);
-                outputs = self.open(&target, format, &rows)?;
+                outputs = self.open(&target, format, &settings)?;
                 let cpu = Settings {
                     backend: Backend::Cpu,
                     ..settings.clone()
@@ -224,11 +206,11 @@ impl<'a> Job<'a> {
     }
 
     /// Opens the picture, and the one of its verdicts if it was asked for.
-    fn open(&self, target: &Target, format: Format, rows: &Range<u32>) -> Result<Outputs> {
-        let width = self.scene.camera.pixeldim[0];
+    fn open(&self, target: &Target, format: Format, settings: &Settings) -> Result<Outputs> {
+        let [width, height] = self.scene.camera.pixeldim;
+        let rows = settings.rows.clone().unwrap_or(0..height).len() as u32;
         let open = |target: &Target, format| {
-            let metadata = self.metadata(rows);
-            Picture::open(target, format, width, rows.len() as u32, metadata)
+            Picture::open(target, format, width, rows, self.metadata(settings))
         };
         Ok(Outputs {
             picture: open(target, format)?,
@@ -250,7 +232,7 @@ impl<'a> Job<'a> {
             bail!("--verdicts is a picture of bytes in a file: .png or .ppm");
         }
         if let Target::Path(other) = picture
-            && (other == path || source::is_same_file(other, path))
+            && (other == path || is_same_file(other, path))
         {
             bail!(
                 "{} is the picture itself: give the verdicts another name",
@@ -274,40 +256,13 @@ impl<'a> Job<'a> {
         rendered
     }
 
-    /// What changes the bytes of a picture; no date and no path, so that the same picture is the same file.
-    fn metadata(&self, rows: &Range<u32>) -> Metadata {
+    /// What the picture's file tells of how it was made.
+    fn metadata(&self, settings: &Settings) -> Metadata {
         let scene = self
             .file
             .and_then(Path::file_name)
             .unwrap_or(OsStr::new(self.name));
-        let [width, height] = self.scene.camera.pixeldim;
-        let entry = |key: &str, text: String| (key.to_owned(), text);
-        let picture = &self.options.picture;
-        let mut entries = vec![
-            entry("Software", SOFTWARE.to_owned()),
-            entry("plumb:scene", scene.to_string_lossy().into_owned()),
-            entry("plumb:size", format!("{width}x{height}")),
-            entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
-            entry(
-                "plumb:screen-tolerance",
-                picture.screen_tolerance.to_string(),
-            ),
-            entry("plumb:samples", picture.samples.to_string()),
-            entry(
-                "plumb:precision",
-                format!("{:?}", self.options.precision).to_lowercase(),
-            ),
-        ];
-        if picture.samples > 1 {
-            entries.push(entry(
-                "plumb:jitter",
-                format!("{:?}", picture.jitter).to_lowercase(),
-            ));
-        }
-        if !self.scene.lights.is_empty() {
-            entries.push(entry("plumb:max-path", picture.max_path.to_string()));
-        }
-        Metadata { entries }
+        Metadata::of(SOFTWARE, &scene.to_string_lossy(), &self.scene, settings)
     }
 
     /// The error, with what would mend it.

@@ -1,6 +1,5 @@
 //! Where a scene comes from on the command line: a file, or stdin.
 
-use std::fs;
 use std::io::{self, BufRead};
 use std::path::Path;
 
@@ -40,9 +39,4 @@ pub(crate) fn load_stdin() -> Result<Option<Scene>> {
         return Ok(None);
     }
     Ok(Some(scene::load_from(STDIN, stdin, Path::new(""))?))
-}
-
-/// Whether both names lead to one file that is there.
-pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }

@@ -12,6 +12,8 @@ use super::sink::Sink;
 use super::target::Target;
 use super::{Format, OutputError, ppm};
 use crate::frame::Band;
+use crate::scene::Scene;
+use crate::settings::Settings;
 
 /// The key of the picture's hash among the metadata.
 pub const HASH_KEY: &str = "plumb:sha256";
@@ -52,6 +54,42 @@ pub struct Metadata {
 }
 
 impl Metadata {
+    /// What changes the bytes of a scene's picture, and by which software it was made; no date and no path, so that the same
+    /// picture is the same file.
+    pub fn of(software: &str, name: &str, scene: &Scene, settings: &Settings) -> Self {
+        let [width, height] = scene.camera.pixeldim;
+        let rows = settings.rows.clone().unwrap_or(0..height);
+        let entry = |key: &str, text: String| (key.to_owned(), text);
+        let mut entries = vec![
+            entry("Software", software.to_owned()),
+            entry("plumb:scene", name.to_owned()),
+            entry("plumb:size", format!("{width}x{height}")),
+            entry("plumb:rows", format!("{}..{}", rows.start, rows.end)),
+            entry(
+                "plumb:screen-tolerance",
+                settings.screen_tolerance.to_string(),
+            ),
+            entry("plumb:samples", settings.samples.to_string()),
+            entry(
+                "plumb:precision",
+                format!("{:?}", settings.precision).to_lowercase(),
+            ),
+        ];
+        if settings.samples > 1 {
+            entries.push(entry(
+                "plumb:jitter",
+                format!("{:?}", settings.jitter).to_lowercase(),
+            ));
+        }
+        if !scene.lights.is_empty() {
+            entries.push(entry(
+                "plumb:max-path",
+                settings.limits.max_path.to_string(),
+            ));
+        }
+        Self { entries }
+    }
+
     /// Checks what PNG and EXR ask of keys and texts, for every format alike: what can be told in one can be told in all.
     fn check(&self) -> Result<(), OutputError> {
         for (index, (key, text)) in self.entries.iter().enumerate() {

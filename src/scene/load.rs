@@ -1,6 +1,6 @@
 //! A file or a stream to the bytes of a scene, within bounds: the step before text → lex → parse → [`Scene`].
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -110,6 +110,24 @@ fn reason(source: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => String::from("permission denied"),
         io::ErrorKind::IsADirectory => String::from("is a directory, not a scene"),
         _ => source.to_string(),
+    }
+}
+
+/// Whether both names lead to one file that is there.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}
+
+impl Scene {
+    /// Whether the scene was made from the file `path`, so that nothing may be written there: what that file is, for people.
+    /// `file` is the scene's own, if it has one.
+    pub fn is_made_from(&self, file: Option<&Path>, path: &Path) -> Option<String> {
+        if file.is_some_and(|file| is_same_file(file, path)) {
+            return Some("the scene itself".into());
+        }
+        let mut textures = self.textures.iter();
+        let texture = textures.find(|texture| is_same_file(path, &texture.path))?;
+        Some(format!("the scene's texture `{}`", texture.name))
     }
 }
 

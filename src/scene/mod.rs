@@ -29,7 +29,7 @@ mod values;
 
 pub use build::{BuildError, BuildErrors, MaterialId, SceneBuilder, TextureId};
 pub use listing::list_model;
-pub use load::{LoadError, MAX_FILE, load, load_from};
+pub use load::{LoadError, MAX_FILE, is_same_file, load, load_from};
 pub use model::{
     Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
     TextureMode,
