@@ -12,7 +12,7 @@
 //!                                            cpu: the same tracer in Rust ◄── certify ──────────┘       PPM / PNG / EXR
 //! ```
 //!
-//! [`render::render`] runs the whole of it, [`mod@bench`] measures it; `src/cli/` only turns arguments into such calls.
+//! [`render::render`] runs the whole of it, [`mod@bench`] measures it, [`probe`] explains a pixel of it; `src/cli/` only turns arguments into such calls.
 
 pub mod bench;
 pub mod certify;
@@ -23,6 +23,7 @@ pub mod gpu;
 pub mod image;
 pub mod jitter;
 pub mod prepare;
+pub mod probe;
 pub mod real;
 pub mod render;
 pub mod scene;

@@ -95,6 +95,16 @@ pub enum Spread {
     Course,
 }
 
+impl Spread {
+    /// What spreads the samples, for people.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Hash => "a hash",
+            Self::Course => "the C library's random(), as the course's program did",
+        }
+    }
+}
+
 /// Which tracer renders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]

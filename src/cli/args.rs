@@ -314,16 +314,6 @@ pub(crate) enum JitterName {
     Course,
 }
 
-impl JitterName {
-    /// What spreads the samples.
-    pub(crate) fn meaning(self) -> &'static str {
-        match self {
-            Self::Hash => "a hash",
-            Self::Course => "the C library's random(), as the course's program did",
-        }
-    }
-}
-
 impl From<JitterName> for Spread {
     fn from(name: JitterName) -> Self {
         match name {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
+use plumb::probe::digits::count;
 use plumb::scene::{LoadError, Scene, remarks};
 use serde_json::{Value, json};
 
@@ -58,8 +59,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
 fn summary(scene: &Scene) -> String {
     let [width, height] = scene.camera.pixeldim;
     let (objects, lights) = (
-        say::count(scene.objects.len(), "object"),
-        say::count(scene.lights.len(), "light"),
+        count(scene.objects.len(), "object"),
+        count(scene.lights.len(), "light"),
     );
     format!("{objects}, {lights}, {width}×{height}")
 }

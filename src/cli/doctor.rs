@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use anyhow::Result;
 use plumb::gpu::device::{AdapterSummary, adapters};
+use plumb::probe::digits::count;
 use plumb::render::install_hint;
 use serde_json::json;
 
@@ -78,7 +79,7 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
             line("cannot be used", problem.clone());
         }
     }
-    let _ = writeln!(text, "  CPU, {}", say::count(args::cores(), "thread"));
+    let _ = writeln!(text, "  CPU, {}", count(args::cores(), "thread"));
     let _ = writeln!(text, "\n{}", verdict(adapters, chosen));
     text
 }
@@ -86,8 +87,8 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
 /// How many checks of the arithmetic were passed.
 fn tested(checks: usize, failed: usize) -> String {
     match failed {
-        0 => format!("passed, {}", say::count(checks, "check")),
-        _ => format!("{failed} of {} failed", say::count(checks, "check")),
+        0 => format!("passed, {}", count(checks, "check")),
+        _ => format!("{failed} of {} failed", count(checks, "check")),
     }
 }
 

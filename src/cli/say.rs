@@ -107,15 +107,6 @@ fn color() -> bool {
         && env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// `1 object`, `2 objects`.
-pub(crate) fn count(n: usize, what: &str) -> String {
-    if n == 1 {
-        format!("1 {what}")
-    } else {
-        format!("{n} {what}s")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,9 +4,10 @@ use std::time::Duration;
 
 use plumb::certify::Stage;
 use plumb::image::Target;
+use plumb::probe::digits::count;
 use plumb::render::{Backend, Precision, Report};
 
-use super::{Answer, say};
+use super::Answer;
 
 /// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
 pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> String {
@@ -20,7 +21,7 @@ pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> Strin
         (Backend::Gpu, Some(adapter)) => {
             format!("GPU {}", adapter.split(" [").next().unwrap_or(adapter))
         }
-        _ => format!("CPU, {}", say::count(report.threads.unwrap_or(1), "thread")),
+        _ => format!("CPU, {}", count(report.threads.unwrap_or(1), "thread")),
     };
     let seconds = took.as_secs_f64();
     format!(
@@ -73,7 +74,7 @@ pub(crate) fn told(report: &Report) -> Vec<String> {
         }
         lines.push(format!(
             "{} so near a border that it is presumed, not proven, to lie on it: {}",
-            say::count(report.presumed as usize, "pixel"),
+            count(report.presumed as usize, "pixel"),
             named.join(", ")
         ));
     }

@@ -14,13 +14,15 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::camera::Ray;
 use super::pixel::Stages;
 use super::sphere::sphere_from_center;
-use super::trace::{Fault, Hit, Limits, Traced, Unwatched, ray_trace};
+use super::trace::{Fault, Hit, Limits, Unwatched, ray_trace};
 use crate::frame::PixelFault;
 use crate::jitter::Sampling;
 use crate::prepare::Prepared;
 use crate::prepare::exact::two_to;
+use crate::real::Real;
 use crate::scene::{Scene, Shape};
 
 /// Which parts are listed.
@@ -74,7 +76,7 @@ pub fn list_pixels(
             let Some(hit) = traced.hit else { continue };
             let name = &scene.objects[hit.object].name;
             if shown.hit {
-                let point = hit_point(scene, prepared, &traced, &hit);
+                let point = hit_point(scene, prepared, &traced.ray, &hit);
                 write!(to, "{name:<12} HIT:{}", triple(point, 1))?;
             }
             if shown.drgb {
@@ -100,17 +102,17 @@ pub fn list_pixels(
 ///
 /// On a plane perpendicular to an axis that coordinate is the plane's own, exactly; on a sphere the point is found from
 /// the center, where a small sphere that is far away has its bits.
-pub fn hit_point(
+pub fn hit_point<R: Real>(
     scene: &Scene,
-    prepared: &Prepared<f64>,
-    traced: &Traced<f64>,
-    hit: &Hit<f64>,
+    prepared: &Prepared<R>,
+    ray: &Ray<R>,
+    hit: &Hit<R>,
 ) -> DVec3 {
     let unit = two_to(prepared.camera.scale);
+    let along = || scene.camera.viewpoint + ray.w.approx() * (unit / hit.inverse.approx());
     match scene.objects[hit.object].shape {
         Shape::Plane { normal, point, .. } => {
-            let along = traced.ray.w.approx() * (unit / hit.inverse);
-            let mut at = scene.camera.viewpoint + along;
+            let mut at = along();
             for axis in 0..3 {
                 if (0..3).all(|other| other == axis || normal[other] == 0.0) {
                     at[axis] = point[axis];
@@ -119,10 +121,12 @@ pub fn hit_point(
             at
         }
         Shape::Sphere { center, .. } => {
-            let sphere = &prepared.spheres[hit.index];
-            center
-                + sphere_from_center(&prepared.camera, sphere, &traced.ray, hit.inverse).approx()
-                    * unit
+            let sphere = prepared.spheres.get(hit.index).copied();
+            let sphere = sphere.or_else(|| prepared.make_sphere(hit.index));
+            sphere.map_or_else(along, |sphere| {
+                let camera = &prepared.camera;
+                center + sphere_from_center(camera, &sphere, ray, hit.inverse).approx() * unit
+            })
         }
     }
 }

@@ -8,8 +8,11 @@ use std::rc::Rc;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::camera::camera_setpix;
-use super::trace::{Fault, Limits, Unwatched, ray_trace};
+use glam::DVec3;
+
+use super::camera::{camera_getdir, camera_setpix, inverse_distance};
+use super::debug::hit_point;
+use super::trace::{Fault, Limits, Unwatched, find_closest_object, ray_trace};
 use crate::frame::{Decided, Part, PixelFault, Stage};
 use crate::jitter::{self, Sampling};
 use crate::prepare::later::Laters;
@@ -65,6 +68,38 @@ pub fn make_pixel<R: Real>(
 /// The colour of a sample.
 fn color<R: Real>(scene: &Prepared<R>, limits: &Limits, x: f64, y: f64) -> Result<V3<R>, Fault> {
     ray_trace(scene, limits, x, y, &mut Unwatched).map(|traced| traced.color)
+}
+
+/// What the ray through a place on the screen hits first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstHit {
+    /// Index of the object in the scene.
+    pub object: usize,
+    /// How far that is from the viewpoint, in world units, and how far off this may be: infinite where the hit is presumed.
+    pub t: Bounded,
+    /// Where, in world coordinates.
+    pub at: DVec3,
+}
+
+/// In one number type; f64 takes itself for exact.
+fn first_hit<R: Real>(
+    scene: &Scene,
+    prepared: &Prepared<R>,
+    [x, y]: [f64; 2],
+) -> Result<Option<FirstHit>, Undecided> {
+    let ray = camera_getdir(&prepared.camera, x, y);
+    let hit = find_closest_object(prepared, &ray)?;
+    Ok(hit.map(|hit| {
+        let t = R::exact(1.0) / inverse_distance(&prepared.camera, &ray, hit.inverse);
+        let Bounded { value, error } = t.near();
+        // The bound is kept low by its own roundings until it is used.
+        let error = error * Bounded::GROW;
+        FirstHit {
+            object: hit.object,
+            t: Bounded { value, error },
+            at: hit_point(scene, prepared, &ray, &hit),
+        }
+    }))
 }
 
 /// What is added to the error of a part: more than all that was flushed to 0 in its sums.
@@ -300,8 +335,28 @@ impl<'a> Stages<'a> {
         (result, stage)
     }
 
-    /// The scene in f64, for what has to be presumed.
-    fn plain(&self) -> &Prepared<f64> {
+    /// What the ray through (x, y) hits first, counted from the bottom left, with fractions between pixels, in the cheapest
+    /// numbers that tell; undecided only where exact numbers and f64 both do not.
+    pub fn first_hit(&self, at: [f64; 2]) -> Result<Option<FirstHit>, Undecided> {
+        if let Ok(hit) = first_hit(self.scene, &self.bounded, at) {
+            return Ok(hit);
+        }
+        if let (Ok(hit), _) = self.exactly(|scene| Ok(first_hit(self.scene, scene, at)?)) {
+            return Ok(hit);
+        }
+        let presumed = first_hit(self.scene, self.plain(), at)?;
+        let unknown = |hit: FirstHit| {
+            let error = f64::INFINITY;
+            FirstHit {
+                t: Bounded { error, ..hit.t },
+                ..hit
+            }
+        };
+        Ok(presumed.map(unknown))
+    }
+
+    /// The scene in f64, for what has to be presumed, and for people to read.
+    pub fn plain(&self) -> &Prepared<f64> {
         self.plain
             .get_or_init(|| Prepared::new(self.scene, self.view))
     }

@@ -1,9 +1,8 @@
-//! A single pixel as the GPU has it before it is quantised, with its error bounds: for `plumb probe`.
+//! A single pixel as the GPU has it before it is quantised, with its error bounds: for `probe`.
 //!
 //! Every function of the shader is the one that renders the picture; only the entry point is another one.
 
 use bytemuck::Zeroable as _;
-use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::compose::compose;
@@ -40,47 +39,69 @@ pub fn features(packed: &Packed, settings: &Settings, lanes: u32) -> FeatureSet 
     }
 }
 
-/// Pixel (x, y) of a certified picture, a ray a pixel; None where the GPU leaves it to the CPU before it has a value.
-///
-/// # Errors
-/// As any rendering on the GPU.
-pub fn single(
-    gpu: &Gpu,
-    packed: &Packed,
-    settings: &Settings,
-    at: [u32; 2],
-) -> Result<Option<Single>, GpuError> {
-    let features = features(packed, settings, gpu.lanes);
-    let Some(wgsl) = wgsl(packed, &features) else {
-        return Ok(None);
-    };
-    let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
-    let job = Job {
-        first: at,
-        size: [1, 1],
-        ..Job::zeroed()
-    };
-    let job = gpu
-        .device
-        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("job"),
-            contents: bytemuck::bytes_of(&job),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-    let pixels = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("pixel"),
-        size: 32,
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    });
-    let group = pipeline.bind(gpu, &job, &pixels, None);
-    let left = gpu.run_once(&pipeline.pipeline, &group, [1, 1], &pixels)?;
-    let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&left);
-    let three = |word: &[u32; 4]| [word[0], word[1], word[2]].map(f32::from_bits);
-    let [value, error] = [0, 1].map(|i| words.get(i).map(three));
-    // A pixel that is given up has no error bounds.
-    let known = |error: &[f32; 3]| error.iter().any(|e| *e > 0.0);
-    Ok(value
-        .zip(error.filter(known))
-        .map(|(value, error)| Single { value, error }))
+/// The shader of single pixels, compiled for a scene and bound to it.
+#[derive(Debug)]
+pub struct SinglePipeline {
+    pipeline: Pipeline,
+    job: wgpu::Buffer,
+    pixel: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl SinglePipeline {
+    /// For pixels of a certified picture, a ray a pixel; none where there is nothing to hit.
+    ///
+    /// # Errors
+    /// As any rendering on the GPU.
+    pub fn new(gpu: &Gpu, packed: &Packed, settings: &Settings) -> Result<Option<Self>, GpuError> {
+        let features = features(packed, settings, gpu.lanes);
+        let Some(wgsl) = wgsl(packed, &features) else {
+            return Ok(None);
+        };
+        let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
+        let buffer = |label, size, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let job = buffer("job", size_of::<Job>() as u64, uniform);
+        let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let pixel = buffer("pixel", 32, storage);
+        let group = pipeline.bind(gpu, &job, &pixel, None);
+        gpu.check()?;
+        Ok(Some(Self {
+            pipeline,
+            job,
+            pixel,
+            group,
+        }))
+    }
+
+    /// Pixel (x, y), counted from the bottom left; None where the GPU leaves it to the CPU before it has a value. `gpu` is
+    /// the device that it was compiled for.
+    ///
+    /// # Errors
+    /// As any rendering on the GPU.
+    pub fn run(&self, gpu: &Gpu, at: [u32; 2]) -> Result<Option<Single>, GpuError> {
+        let job = Job {
+            first: at,
+            size: [1, 1],
+            ..Job::zeroed()
+        };
+        gpu.queue
+            .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+        let left = gpu.run_once(&self.pipeline.pipeline, &self.group, [1, 1], &self.pixel)?;
+        let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&left);
+        let three = |word: &[u32; 4]| [word[0], word[1], word[2]].map(f32::from_bits);
+        let [value, error] = [0, 1].map(|i| words.get(i).map(three));
+        // A pixel that is given up has no error bounds.
+        let known = |error: &[f32; 3]| error.iter().any(|e| *e > 0.0);
+        Ok(value
+            .zip(error.filter(known))
+            .map(|(value, error)| Single { value, error }))
+    }
 }

@@ -6,21 +6,21 @@
 
 use std::fmt;
 
-use plumb::prepare::camera::{origin, step};
-use plumb::prepare::exact::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
-use plumb::scene::{Camera, Extent, Scene, Shape};
+use crate::prepare::camera::{origin, step};
+use crate::prepare::exact::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
+use crate::scene::{Camera, Extent, Scene, Shape};
 
 use super::digits;
 
 /// The ray of a pixel, as rational numbers: viewpoint + s·W goes through the pixel's world point at s = 1.
-pub(crate) struct ExactRay {
+pub(super) struct ExactRay {
     viewpoint: [Ratio; 3],
     w: [Ratio; 3],
 }
 
 /// What an object answers, exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Verdict {
+pub(super) enum Verdict {
     /// It is hit.
     Hit,
     /// It is not.
@@ -29,7 +29,7 @@ pub(crate) enum Verdict {
 
 /// Why an object is not hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Reason {
+pub(super) enum Reason {
     /// N·D = 0.
     Parallel,
     /// The plane contains the viewpoint: t = 0.
@@ -81,7 +81,7 @@ impl fmt::Display for Reason {
 
 impl ExactRay {
     /// The ray through pixel (x, y), counted from the bottom left, with fractions between pixels.
-    pub(crate) fn new(camera: &Camera, x: f64, y: f64) -> Self {
+    pub(super) fn new(camera: &Camera, x: f64, y: f64) -> Self {
         let at = |i: usize, pixel: f64| {
             let (pixels, world) = (camera.pixeldim[i], camera.worlddim[i]);
             origin(pixels, world) + ratio(pixel) * step(pixels, world)
@@ -92,12 +92,12 @@ impl ExactRay {
     }
 
     /// The pixel's world point.
-    pub(crate) fn world_point(&self) -> [f64; 3] {
+    pub(super) fn world_point(&self) -> [f64; 3] {
         [0, 1, 2].map(|i| (&self.viewpoint[i] + &self.w[i]).to_f64().value())
     }
 
     /// What the object of this number answers, under the screen tolerance τ.
-    pub(crate) fn ask(&self, scene: &Scene, object: usize, screen_tolerance: f64) -> Verdict {
+    pub(super) fn ask(&self, scene: &Scene, object: usize, screen_tolerance: f64) -> Verdict {
         match scene.objects[object].shape {
             Shape::Plane {
                 normal,
@@ -191,7 +191,7 @@ mod tests {
         let text = format!(
             "camera c {{ pixeldim 3 3 worlddim 2 2 viewpoint 1 1 2 }} material m {{ ambient 1 1 1 }} {objects}"
         );
-        let scene = plumb::scene::parse("test", text.as_bytes(), Path::new("")).unwrap();
+        let scene = crate::scene::parse("test", text.as_bytes(), Path::new("")).unwrap();
         let ray = ExactRay::new(&scene.camera, 1.0, 1.0);
         assert_eq!(ray.world_point(), [1.0, 1.0, 0.0]);
         (0..scene.objects.len())

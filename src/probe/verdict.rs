@@ -1,18 +1,16 @@
-//! What the GPU says of a single pixel, for `probe`.
+//! Whether the GPU is sure of a single pixel.
 
 use std::fmt;
 
-use plumb::certify::Stage;
-use plumb::gpu::device;
-use plumb::gpu::pack::Packed;
-use plumb::gpu::single::{Single, single};
-use plumb::render::{Backend, Report, Settings, render};
-use plumb::scene::Scene;
-
-use super::cache;
+use crate::certify::Stage;
+use crate::gpu::GpuError;
+use crate::gpu::device::Gpu;
+use crate::render::{Backend, Precision, Report, Settings, render};
+use crate::scene::Scene;
 
 /// What the GPU says of a pixel.
-pub(crate) enum Verdict {
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
     /// It is sure of these bytes.
     Sure([u8; 3]),
     /// It leaves the pixel to the CPU.
@@ -31,23 +29,23 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// What it has before it quantises, with bounds; None where it has no value, or cannot be asked.
-pub(crate) fn value(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Single> {
-    let packed = Packed::new(scene, settings);
-    if packed.unprovable.is_some() {
-        return None;
-    }
-    let gpu = device::open(settings.adapter.as_deref()).ok()?;
-    single(&gpu, &packed, settings, [x, y]).ok().flatten()
-}
-
 /// Asks it for the whole row, certified: what is rendered is what is told.
-pub(crate) fn ask(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Verdict {
+pub(super) fn ask(
+    scene: &Scene,
+    settings: &Settings,
+    gpu: Result<&Gpu, &GpuError>,
+    x: u32,
+    y: u32,
+) -> Verdict {
+    if let Err(error) = gpu {
+        return Verdict::Unknown(error.to_string());
+    }
     let settings = Settings {
         rows: Some(y..y + 1),
         backend: Backend::Gpu,
+        precision: Precision::Certified,
+        values: false,
         verdicts: true,
-        cache: cache::folder(),
         ..settings.clone()
     };
     let x = x as usize;

@@ -1,8 +1,8 @@
-//! Numbers and lines for people to read, as `plumb probe` prints them.
+//! Numbers and lines for people to read, as `plumb probe` and reports print them.
 
 use std::io::{self, Write};
 
-use plumb::real::V3;
+use crate::real::V3;
 
 /// Every digit that tells an f64 from its neighbours.
 const ALL: usize = 17;
@@ -10,35 +10,44 @@ const ALL: usize = 17;
 const SOME: usize = 9;
 
 /// The number in full, `%.17g` in C's terms.
-pub(crate) fn full(value: f64) -> String {
+pub fn full(value: f64) -> String {
     significant(value, ALL)
 }
 
 /// The number to nine digits.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     significant(value, SOME)
 }
 
 /// Three numbers in full.
-pub(crate) fn triple(v: [f64; 3]) -> String {
+pub fn triple(v: [f64; 3]) -> String {
     let [x, y, z] = v.map(full);
     format!("({x}, {y}, {z})")
 }
 
 /// Three numbers to nine digits.
-pub(crate) fn short_triple(v: [f64; 3]) -> String {
+pub fn short_triple(v: [f64; 3]) -> String {
     let [x, y, z] = v.map(short);
     format!("({x}, {y}, {z})")
 }
 
 /// The components of a vector.
-pub(crate) fn components(v: V3<f64>) -> [f64; 3] {
+pub fn components(v: V3<f64>) -> [f64; 3] {
     [v.x, v.y, v.z]
 }
 
 /// A line with its heading.
-pub(crate) fn line(to: &mut dyn Write, what: &str, value: String) -> io::Result<()> {
+pub fn line(to: &mut dyn Write, what: &str, value: String) -> io::Result<()> {
     writeln!(to, "{what:<13}{value}")
+}
+
+/// `1 object`, `2 objects`.
+pub fn count(n: usize, what: &str) -> String {
+    if n == 1 {
+        format!("1 {what}")
+    } else {
+        format!("{n} {what}s")
+    }
 }
 
 /// C's `%.Ng` less trailing zeros, and never "-0".

@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use plumb::cpu::camera::{Ray, camera_getdir, inverse_distance};
-use plumb::cpu::debug::hit_point;
-use plumb::cpu::plane::plane_hits;
-use plumb::cpu::sphere::sphere_hits;
-use plumb::cpu::trace::{Hit, Traced};
-use plumb::prepare::Prepared;
-use plumb::real::Undecided;
-use plumb::scene::Scene;
+use crate::cpu::camera::{Ray, camera_getdir, inverse_distance};
+use crate::cpu::debug::hit_point;
+use crate::cpu::plane::plane_hits;
+use crate::cpu::sphere::sphere_hits;
+use crate::cpu::trace::{Hit, Traced};
+use crate::prepare::Prepared;
+use crate::real::{Real, Undecided};
+use crate::scene::Scene;
 
 use super::digits::{components, full, line, triple};
 use super::why::{ExactRay, Verdict};
@@ -19,7 +19,7 @@ use super::why::{ExactRay, Verdict};
 const LISTED: usize = 50;
 
 /// A ray from the viewpoint, as the tracer has it and as it is exactly.
-pub(crate) struct Sight<'a> {
+pub(super) struct Sight<'a> {
     scene: &'a Scene,
     prepared: &'a Prepared<f64>,
     screen_tolerance: f64,
@@ -29,7 +29,7 @@ pub(crate) struct Sight<'a> {
 
 impl<'a> Sight<'a> {
     /// Through pixel (x, y), counted from the bottom left, with fractions between pixels.
-    pub(crate) fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         prepared: &'a Prepared<f64>,
         screen_tolerance: f64,
@@ -45,17 +45,15 @@ impl<'a> Sight<'a> {
     }
 
     /// Shows where the ray runs.
-    pub(crate) fn ray(&self, to: &mut dyn Write) -> io::Result<()> {
-        let length = self.ray.w2.sqrt();
-        let direction = self.ray.w.approx().to_array().map(|w| w / length);
+    pub(super) fn ray(&self, to: &mut dyn Write) -> io::Result<()> {
         let viewpoint = self.scene.camera.viewpoint.to_array();
         line(to, "world point", triple(self.exact.world_point()))?;
         line(to, "ray from", triple(viewpoint))?;
-        line(to, "direction", triple(direction))
+        line(to, "direction", triple(direction(&self.ray)))
     }
 
     /// What every object answered, in the order of the file; misses too if there are few objects, or `all` is wanted.
-    pub(crate) fn objects(&self, traced: &Traced<f64>, all: bool) -> Result<String, Undecided> {
+    pub(super) fn objects(&self, traced: &Traced<f64>, all: bool) -> Result<String, Undecided> {
         let Self {
             scene,
             prepared,
@@ -66,7 +64,7 @@ impl<'a> Sight<'a> {
         let hits = self.hits()?;
         let objects = &scene.objects;
         let with_misses = all || objects.len() <= LISTED;
-        let widest = |width: fn(&plumb::scene::Object) -> usize| {
+        let widest = |width: fn(&crate::scene::Object) -> usize| {
             objects.iter().map(width).max().unwrap_or(0).min(24)
         };
         let (names, entities) = (
@@ -95,7 +93,7 @@ impl<'a> Sight<'a> {
             let verdict = self.exact.ask(scene, index, *screen_tolerance);
             let _ = match (hit, verdict) {
                 (Some(hit), verdict) => {
-                    let point = hit_point(scene, prepared, traced, hit);
+                    let point = hit_point(scene, prepared, &traced.ray, hit);
                     let t = 1.0 / inverse_distance(&prepared.camera, &self.ray, hit.inverse);
                     let doubt = match verdict {
                         Verdict::Hit => String::new(),
@@ -144,7 +142,7 @@ impl<'a> Sight<'a> {
     }
 
     /// What the ray hits first.
-    pub(crate) fn closest(&self, traced: &Traced<f64>, to: &mut dyn Write) -> io::Result<()> {
+    pub(super) fn closest(&self, traced: &Traced<f64>, to: &mut dyn Write) -> io::Result<()> {
         let Self {
             scene, prepared, ..
         } = self;
@@ -152,7 +150,7 @@ impl<'a> Sight<'a> {
             return line(to, "hit", "nothing".to_owned());
         };
         let object = &scene.objects[hit.object];
-        let point = hit_point(scene, prepared, traced, hit);
+        let point = hit_point(scene, prepared, &traced.ray, hit);
         let t = 1.0 / inverse_distance(&prepared.camera, &self.ray, hit.inverse);
         line(
             to,
@@ -162,4 +160,10 @@ impl<'a> Sight<'a> {
         line(to, "ambient", triple(components(traced.ambient)))?;
         line(to, "path length", full(t))
     }
+}
+
+/// The direction of a ray, of unit length.
+pub(super) fn direction<R: Real>(ray: &Ray<R>) -> [f64; 3] {
+    let length = ray.w2.approx().sqrt();
+    ray.w.approx().to_array().map(|w| w / length)
 }

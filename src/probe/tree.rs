@@ -4,16 +4,15 @@
 
 use std::io::{self, Write};
 
-use plumb::cpu::light::Lit;
-use plumb::cpu::surface::{Point, texel_place, tile_material};
-use plumb::cpu::trace::{Branch, RayKind, Unmet, Watch};
-use plumb::prepare::exact::two_to;
-use plumb::prepare::{Prepared, Surface};
-use plumb::real::V3;
-use plumb::scene::Scene;
+use crate::cpu::light::Lit;
+use crate::cpu::surface::{Point, texel_place, tile_material};
+use crate::cpu::trace::{Branch, RayKind, Unmet, Watch};
+use crate::prepare::exact::two_to;
+use crate::prepare::{Prepared, Surface};
+use crate::real::V3;
+use crate::scene::Scene;
 
-use super::digits::{components, short, short_triple};
-use super::say;
+use super::digits::{components, count, short, short_triple};
 
 /// More rays than this are only counted.
 const SHOWN_RAYS: usize = 200;
@@ -23,7 +22,7 @@ const SHOWN_LIGHTS: usize = 50;
 const DEEPEST: usize = 12;
 
 /// Writes the tree of one sample.
-pub(crate) struct Tree<'a> {
+pub(super) struct Tree<'a> {
     scene: &'a Scene,
     prepared: &'a Prepared<f64>,
     max_path: f64,
@@ -67,7 +66,7 @@ struct LightCounts {
 
 impl<'a> Tree<'a> {
     /// For a tree of rays in `scene`, of which `prepared` is what the tracer has; `all` shows all of it.
-    pub(crate) fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         prepared: &'a Prepared<f64>,
         max_path: f64,
@@ -92,7 +91,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Ends the tree: how many rays there were, and how many of them are not shown.
-    pub(crate) fn finish(mut self) -> io::Result<()> {
+    pub(super) fn finish(mut self) -> io::Result<()> {
         let Counts {
             met,
             nothing,
@@ -125,7 +124,7 @@ impl<'a> Tree<'a> {
         );
         self.line(&format!(
             "in all       {}: {}",
-            say::count(met + nothing, "ray"),
+            count(met + nothing, "ray"),
             parts.join(", ")
         ));
         self.written
