@@ -86,13 +86,10 @@ fn facts_are_those_found_by_hand() {
             near(rough.unwrap(), value, 1e-14);
         }
         let single = facts.single.unwrap();
-        for channel in 0..3 {
-            let off = (f64::from(single.value[channel]) - 255.0 * value[channel]).abs();
-            assert!(
-                off <= f64::from(single.error[channel]) + 1e-12,
-                "{single:?}"
-            );
-            assert!(single.error[channel] < 1e-2, "{single:?}");
+        for ((value, single), error) in value.iter().zip(single.value).zip(single.error) {
+            let off = (f64::from(single) - 255.0 * value).abs();
+            assert!(off <= f64::from(error) + 1e-12, "{single} ± {error}");
+            assert!(error < 1e-2, "{single} ± {error}");
         }
         match facts.verdict {
             Some(Verdict::Sure(sure)) => assert_eq!(sure, bytes),
