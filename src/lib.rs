@@ -12,12 +12,16 @@
 //!                                            cpu: the same tracer in Rust ◄── certify ──────────┘       PPM / PNG / EXR
 //! ```
 //!
-//! [`render::render`] runs the whole of it, [`mod@bench`] measures it, [`probe`] explains a pixel of it; `src/cli/` only turns arguments into such calls.
+//! [`edit`] stands beside the first line: changes on top of a scene, and into its text.
+//!
+//! [`render::render`] runs the whole of it, [`mod@bench`] measures it, [`probe`] explains a pixel of it, `preview` shows it in a
+//! window; `src/cli/` only turns arguments into such calls.
 
 pub mod bench;
 pub mod certify;
 pub mod cpu;
 pub mod diagnostic;
+pub mod edit;
 pub mod frame;
 pub mod gpu;
 pub mod image;

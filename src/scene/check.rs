@@ -135,16 +135,7 @@ pub(super) fn faults(
                 if row.name == "xdir" && draft.xdir.is_none() {
                     continue;
                 }
-                let values = field(draft);
-                if values.iter().any(|value| !value.is_finite()) {
-                    faults.push(format!("`{}` must be finite", row.name));
-                } else if !row.limit.broken(values).is_empty() {
-                    faults.push(format!(
-                        "`{}` must be {}, and is {values:?}",
-                        row.name,
-                        row.limit.wording()
-                    ));
-                }
+                faults.extend(row_fault(row, field(draft)));
                 continue;
             }
             Take::Material(index) => (*index(draft) < materials, "material"),
@@ -163,6 +154,40 @@ pub(super) fn faults(
     }
     faults
 }
+
+/// What is wrong with the numbers of one row.
+fn row_fault(row: &Attribute, values: &[f64]) -> Option<String> {
+    let name = row.name;
+    if values.iter().any(|value| !value.is_finite()) {
+        Some(format!("`{name}` must be finite"))
+    } else if !row.limit.broken(values).is_empty() {
+        let wording = row.limit.wording();
+        Some(format!("`{name}` must be {wording}, and is {values:?}"))
+    } else {
+        None
+    }
+}
+
+/// What is wrong with new numbers for an attribute of an entity type, by its row. What attributes must keep between
+/// them is not asked: it concerns none that [`edit`](crate::edit) changes.
+pub(crate) fn fault(entity: &str, attribute: &str, values: &[f64]) -> Option<String> {
+    let Some((_, row)) =
+        table::find(entity.as_bytes()).and_then(|entity| entity.row(attribute.as_bytes()))
+    else {
+        return Some(format!("`{entity}` has no attribute `{attribute}`"));
+    };
+    match row.take {
+        Take::Numbers(count, _) | Take::Integers(count, _) if count != values.len() => Some(
+            format!("`{attribute}` takes {count} of them, not {}", values.len()),
+        ),
+        Take::Spread(_) if values.len() != 3 => Some(format!(
+            "`{attribute}` takes 3 of them, not {}",
+            values.len()
+        )),
+        _ => row_fault(row, values),
+    }
+}
+
 /// As in a scene from a file, zero is never negative.
 pub(super) fn positive_zeros(kind: Kind, mut draft: Draft) -> Draft {
     for row in table::of(kind).rows() {

@@ -60,6 +60,22 @@ pub(super) struct Picture {
     pub(super) texels: Arc<Texels>,
 }
 
+impl Picture {
+    /// A picture of which only the name is known.
+    pub(super) fn unread(filename: &str) -> Self {
+        let texels = Texels {
+            width: 0,
+            height: 0,
+            rgb: Vec::new(),
+        };
+        Self {
+            filename: filename.to_owned(),
+            path: PathBuf::from(filename),
+            texels: Arc::new(texels),
+        }
+    }
+}
+
 /// A scene while its entities come in.
 #[derive(Debug, Default)]
 pub(super) struct Assembly {
@@ -97,23 +113,12 @@ impl Assembly {
             }),
             Kind::Texture => {
                 // A texture without a picture is an error that was reported; its place in the list stays taken.
-                let (filename, path, texels) = match draft.picture {
-                    Some(picture) => (picture.filename, picture.path, picture.texels),
-                    None => (
-                        String::new(),
-                        PathBuf::new(),
-                        Arc::new(Texels {
-                            width: 0,
-                            height: 0,
-                            rgb: Vec::new(),
-                        }),
-                    ),
-                };
+                let picture = draft.picture.unwrap_or_else(|| Picture::unread(""));
                 self.textures.push(Texture {
                     name: draft.name,
-                    filename,
-                    path,
-                    texels,
+                    filename: picture.filename,
+                    path: picture.path,
+                    texels: picture.texels,
                 });
             }
             Kind::Light { spot } => {

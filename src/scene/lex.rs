@@ -85,6 +85,14 @@ impl<'t> Lexer<'t> {
         }
     }
 
+    /// Starts at a byte of a text, the first of a token.
+    pub(super) fn at(text: &'t [u8], at: usize) -> Self {
+        Self {
+            text,
+            at: at.min(text.len()),
+        }
+    }
+
     /// The next token; [`Kind::End`] again and again at the end.
     pub(super) fn token(&mut self) -> Token<'t> {
         self.skip_space();

@@ -4,6 +4,8 @@
 //! file ─ load ─ bytes ─ encoding, lex ─ parse, values (by the rows of table), check ─ draft ─► Scene ─ listing ─► text
 //!                                       build (a scene built in code) ────────────────┘
 //! ```
+//!
+//! Beside it, `places` tells where in the text what is in the scene stands.
 
 mod build;
 mod check;
@@ -18,6 +20,7 @@ pub mod model;
 mod names;
 mod number;
 mod parse;
+mod places;
 mod recover;
 mod remarks;
 mod slips;
@@ -27,6 +30,10 @@ mod tests;
 mod texture;
 mod values;
 
+pub(crate) use check::fault;
+pub(crate) use parse::parse_text;
+pub(crate) use places::number_at;
+
 pub use build::{BuildError, BuildErrors, MaterialId, SceneBuilder, TextureId};
 pub use listing::list_model;
 pub use load::{LoadError, MAX_FILE, is_same_file, load, load_from};
@@ -35,5 +42,6 @@ pub use model::{
     TextureMode,
 };
 pub use parse::parse;
+pub use places::{EntityId, Given, Place, Places, line, places};
 pub use remarks::remarks;
 pub use table::{MAX_PIXELDIM, PPLANE_SHADERS, PSPHERE_SHADERS};

@@ -26,6 +26,18 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 /// # Errors
 /// Everything that is wrong with the scene, in the order of the text.
 pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<Scene, Diagnostics> {
+    read(name, bytes, Some(folder))
+}
+
+/// Reads a scene but for the pictures of its textures, which stay empty: for who asks about the text alone.
+///
+/// # Errors
+/// As [`parse`], but for textures.
+pub(crate) fn parse_text(name: &str, bytes: &[u8]) -> Result<Scene, Diagnostics> {
+    read(name, bytes, None)
+}
+
+fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<Scene, Diagnostics> {
     if let Some(error) = encoding::not_a_scene(bytes) {
         return Err(Diagnostics::new(name, bytes, vec![error], 1));
     }
@@ -65,9 +77,9 @@ pub(super) struct Parser<'t> {
     pub(super) textures: Names<'t>,
     /// Where the first camera is, or something that was meant to be one.
     pub(super) camera: Option<Range<usize>>,
-    /// Pictures read so far, and the folder that their names start from.
+    /// Pictures read so far, and the folder that their names start from; without one they are not read.
     pub(super) pictures: Pictures,
-    pub(super) folder: &'t Path,
+    pub(super) folder: Option<&'t Path>,
 }
 
 /// An entity while its block is read.
@@ -83,7 +95,7 @@ pub(super) struct Block {
 }
 
 impl<'t> Parser<'t> {
-    fn new(text: &'t [u8], folder: &'t Path) -> Self {
+    fn new(text: &'t [u8], folder: Option<&'t Path>) -> Self {
         let mut lexer = Lexer::new(text);
         let window = [lexer.token(), lexer.token(), lexer.token()];
         Self {

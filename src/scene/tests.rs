@@ -333,3 +333,20 @@ fn ids_of_another_builder_are_told() {
             .contains("another builder")
     );
 }
+
+#[test]
+fn what_can_be_changed_alone_is_in_no_relation() {
+    use crate::edit::{Measure, Reflectivity, Target};
+    let mut changeable = vec![Target::Viewpoint, Target::Light(0)];
+    changeable.extend(Reflectivity::ALL.map(|which| Target::Material(0, which)));
+    changeable.extend([Measure::Center, Measure::Radius].map(|which| Target::Sphere(0, which)));
+    let related: Vec<&str> = table::ENTITIES
+        .iter()
+        .filter_map(|entity| entity.relation.as_ref())
+        .flat_map(|relation| [relation.attribute, relation.other])
+        .collect();
+    assert!(related.contains(&"xdir") && related.contains(&"location"));
+    for target in changeable {
+        assert!(!related.contains(&target.attribute()), "{target:?}");
+    }
+}

@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use super::draft::Picture;
 use super::lex::{Kind as Lexeme, Token};
 use super::names::nearest;
 use super::number::{self, NumberError, looks_numeric};
@@ -220,7 +221,11 @@ impl<'t> Parser<'t> {
         let Ok(filename) = std::str::from_utf8(token.text) else {
             return false;
         };
-        match self.pictures.read(self.folder, filename) {
+        let read = match self.folder {
+            Some(folder) => self.pictures.read(folder, filename),
+            None => Ok(Picture::unread(filename)),
+        };
+        match read {
             Ok(picture) => block.draft.picture = Some(picture),
             Err(why) => {
                 let mut error = Diagnostic::new(

@@ -1,0 +1,234 @@
+//! Changes into the text of their scene: the numbers are exchanged where they stand, all other bytes stay.
+
+use std::ops::Range;
+
+use super::changes::Changes;
+use super::spell;
+use super::target::{Reflectivity, Target};
+use crate::diagnostic::Diagnostics;
+use crate::scene::{EntityId, Given, MAX_FILE, Place, number_at, parse_text, places};
+
+/// Why changes could not be written into a text. Nothing of it is changed then.
+#[derive(Debug, thiserror::Error)]
+pub enum EditError {
+    /// The text has mistakes, and where something stands in it is not known.
+    #[error("a scene with mistakes cannot be changed\n{0}")]
+    Scene(#[from] Diagnostics),
+    /// The text has no such entity: the changes are of another.
+    #[error("{} cannot be written: this text has no {}", .0.attribute(), numbered(.0.entity()))]
+    Missing(Target),
+    /// It would be larger than a scene may be.
+    #[error("with the changes the scene would be too large: more than {} MiB", MAX_FILE >> 20)]
+    TooLarge,
+}
+
+/// An entity that is not there, by its number in its list, from 1.
+fn numbered(id: EntityId) -> String {
+    match id {
+        EntityId::Camera => String::from("camera"),
+        EntityId::Material(index) => format!("material number {}", index + 1),
+        EntityId::Texture(index) => format!("texture number {}", index + 1),
+        EntityId::Object(index) => format!("sphere that is object number {}", index + 1),
+        EntityId::Light(index) => format!("light number {}", index + 1),
+    }
+}
+
+/// Bytes to put in the place of others.
+struct Edit {
+    place: Range<usize>,
+    bytes: Vec<u8>,
+}
+
+impl Changes {
+    /// The text with the changes written into it: [`parse`](crate::scene::parse()) makes of it what [`Changes::apply`]
+    /// makes of the scene of `text`, to the last bit.
+    ///
+    /// Only numbers whose value changes are exchanged. Where an attribute is not given, it is added to the block in the
+    /// layout of its neighbours; where `specular` is one number for all three and they come to differ, it becomes three.
+    /// Everything else, comments, order and the ends of lines, stays byte for byte. Textures are not read.
+    ///
+    /// # Errors
+    /// When the text has mistakes, or has not what is changed, or would become too large.
+    pub fn write(&self, text: &[u8]) -> Result<Vec<u8>, EditError> {
+        let scene = parse_text("the scene", text)?;
+        let places = places(text);
+        let mut edits = Vec::new();
+        for (target, value) in self.iter() {
+            let missing = || EditError::Missing(target);
+            if target.value_in(&scene).ok_or_else(missing)? == value {
+                continue;
+            }
+            let place = places.of(text, target.entity()).ok_or_else(missing)?;
+            match (place.given(target.attribute()), target) {
+                (Some(given), _) => respell(text, given, value.numbers(), &mut edits),
+                (None, Target::Material(_, reflectivity)) => {
+                    let edit = add(text, &place, reflectivity, value.numbers());
+                    edits.push(edit.ok_or_else(missing)?);
+                }
+                // Every other attribute that can be changed is required.
+                (None, _) => return Err(missing()),
+            }
+        }
+        // Several that are added in one place stay in their order.
+        edits.sort_by_key(|edit| edit.place.start);
+        exchange(text, &edits, MAX_FILE).ok_or(EditError::TooLarge)
+    }
+}
+
+/// The text with edits in it, which are in order and do not overlap; nothing if that is more than `limit` bytes.
+fn exchange(text: &[u8], edits: &[Edit], limit: u64) -> Option<Vec<u8>> {
+    let added: usize = edits.iter().map(|edit| edit.bytes.len()).sum();
+    let removed: usize = edits.iter().map(|edit| edit.place.len()).sum();
+    let length = text.len() + added - removed;
+    if length as u64 > limit {
+        return None;
+    }
+    let mut written = Vec::with_capacity(length);
+    let mut done = 0;
+    for Edit { place, bytes } in edits {
+        written.extend_from_slice(&text[done..place.start]);
+        written.extend_from_slice(bytes);
+        done = place.end;
+    }
+    written.extend_from_slice(&text[done..]);
+    Some(written)
+}
+
+/// Exchanges the numbers of an attribute that differ from what is given.
+fn respell(text: &[u8], given: &Given, values: &[f64], edits: &mut Vec<Edit>) {
+    let spelt = |place: &Range<usize>, value: f64| {
+        if number_at(text, place) == Some(value) {
+            text[place.clone()].to_vec()
+        } else {
+            spell::number(value).into_bytes()
+        }
+    };
+    if let ([one], [red, green, blue]) = (&given.values[..], values) {
+        let bytes = if red == green && green == blue {
+            spelt(one, *red)
+        } else {
+            [red, green, blue]
+                .map(|value| spelt(one, *value))
+                .join(&b' ')
+        };
+        let place = one.clone();
+        edits.push(Edit { place, bytes });
+        return;
+    }
+    for (place, value) in given.values.iter().zip(values) {
+        if number_at(text, place) != Some(*value) {
+            let place = place.clone();
+            let bytes = spell::number(*value).into_bytes();
+            edits.push(Edit { place, bytes });
+        }
+    }
+}
+
+/// Adds a reflectivity to the block of a material that does not give it: after the last one that stands before it in
+/// docs/SCENE.md, or at the end. Nothing for an empty block, which no material has.
+fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -> Option<Edit> {
+    let given = &place.given;
+    let before = |other: &&Reflectivity| **other < reflectivity;
+    let index = Reflectivity::ALL
+        .iter()
+        .rev()
+        .filter(before)
+        .find_map(|other| given.iter().position(|given| given.name == other.name()))
+        .or(given.len().checked_sub(1))?;
+    let anchor = given.get(index)?;
+    let end = last_byte(anchor);
+    let next = given.get(index + 1);
+    let next_start = next.map_or(place.close, |next| next.key.start);
+    let break_after = text[end..next_start].iter().position(is_break);
+    let line = match line_of(text, place, anchor) {
+        // A line of its own, where the neighbour has one.
+        Some(line) if break_after.is_some() || next.is_none() => line,
+        _ => {
+            let previous = index.checked_sub(1).and_then(|index| given.get(index));
+            let separators = [
+                previous.map(|previous| last_byte(previous)..anchor.key.start),
+                next.map(|next| end..next.key.start),
+            ];
+            let separator = separators
+                .into_iter()
+                .flatten()
+                .map(|separator| &text[separator])
+                .find(|separator| separator.iter().all(is_blank))
+                .unwrap_or(b" ");
+            let bytes = [separator, &entry(b" ", reflectivity, values)].concat();
+            return Some(Edit {
+                place: end..end,
+                bytes,
+            });
+        }
+    };
+    // Behind a comment that the neighbour's line ends with.
+    let at = end + break_after.unwrap_or(0);
+    let line_end = match break_after {
+        Some(_) if text[at..].starts_with(b"\r\n") => &text[at..at + 2],
+        Some(_) => &text[at..=at],
+        None if text[..line.start].ends_with(b"\r\n") => b"\r\n",
+        None => &text[line.start - 1..line.start],
+    };
+    let gap = gap(text, place, anchor, reflectivity);
+    let entry = entry(&gap, reflectivity, values);
+    let bytes = [line_end, &text[line], &entry].concat();
+    Some(Edit {
+        place: at..at,
+        bytes,
+    })
+}
+
+/// An attribute as it is written.
+fn entry(gap: &[u8], reflectivity: Reflectivity, values: &[f64]) -> Vec<u8> {
+    let name = reflectivity.name().as_bytes();
+    [name, gap, spell::numbers(values).as_bytes()].concat()
+}
+
+/// The indentation of the line that an attribute of a block begins; nothing if it does not begin one. Its start is not
+/// 0, as the line before ends there.
+fn line_of(text: &[u8], place: &Place, given: &Given) -> Option<Range<usize>> {
+    // Not further back than the block, so that a file on one line takes linear time.
+    let inside = place.open..given.key.start;
+    let line_end = text[inside].iter().rposition(is_break)?;
+    let indentation = place.open + line_end + 1..given.key.start;
+    text[indentation.clone()]
+        .iter()
+        .all(is_blank)
+        .then_some(indentation)
+}
+
+/// What stands between an added name and its values: as behind a neighbour's name, so that values line up where those
+/// of the block do.
+fn gap(text: &[u8], place: &Place, anchor: &Given, reflectivity: Reflectivity) -> Vec<u8> {
+    let gap_of = |given: &Given| &text[given.key.end..given.values[0].start];
+    let gap = gap_of(anchor);
+    if gap.contains(&b'\t') && gap.iter().all(is_blank) {
+        return gap.to_vec();
+    }
+    let is_spaces = |gap: &[u8]| gap.iter().all(|byte| *byte == b' ');
+    let in_columns = |given: &Given| gap_of(given).len() > 1 && is_spaces(gap_of(given));
+    let column = anchor.key.len() + gap.len();
+    let width = column.saturating_sub(reflectivity.name().len());
+    if is_spaces(gap) && place.given.iter().any(in_columns) {
+        vec![b' '; width.max(1)]
+    } else {
+        vec![b' ']
+    }
+}
+
+/// The byte after an attribute's last value.
+fn last_byte(given: &Given) -> usize {
+    given.values.last().map_or(given.key.end, |value| value.end)
+}
+
+fn is_break(byte: &u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
+fn is_blank(byte: &u8) -> bool {
+    matches!(byte, b' ' | b'\t')
+}
+
+#[cfg(test)]
+mod tests;
