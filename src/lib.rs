@@ -27,6 +27,8 @@ pub mod gpu;
 pub mod image;
 pub mod jitter;
 pub mod prepare;
+#[cfg(feature = "preview")]
+pub mod preview;
 pub mod probe;
 pub mod real;
 pub mod render;

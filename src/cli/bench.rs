@@ -7,7 +7,7 @@ use plumb::bench::measure::Unmeasured;
 use plumb::bench::{Asked, BenchError, bench, plot, table};
 use plumb::image::{Document, Target};
 use plumb::render;
-use plumb::scene::Scene;
+use plumb::scene::{Scene, is_same_file};
 
 use super::progress::Progress;
 use super::values::size;
@@ -157,11 +157,7 @@ fn target(out: &Path, args: &Args) -> Result<Target> {
             out.display()
         );
     }
-    if args
-        .scenes
-        .iter()
-        .any(|scene| source::is_same_file(out, scene))
-    {
+    if args.scenes.iter().any(|scene| is_same_file(out, scene)) {
         bail!(
             "{} is one of the scenes: give the plot another name",
             out.display()

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use plumb::image::{self, Comparison, Format, Metadata, Picture, SizesDiffer, Target};
+use plumb::scene::is_same_file;
 use serde_json::json;
 
-use super::{Answer, SOFTWARE, picture, say, source};
+use super::{Answer, SOFTWARE, picture, say};
 
 /// What `plumb compare` takes.
 #[derive(Debug, clap::Args)]
@@ -68,7 +69,7 @@ fn target(out: &Path, args: &Args) -> Result<(Target, Format)> {
     }
     if [&args.a, &args.b]
         .iter()
-        .any(|read| source::is_same_file(out, read))
+        .any(|read| is_same_file(out, read))
     {
         bail!(
             "{} is one of the pictures to compare: give the difference another name",

@@ -13,6 +13,7 @@ mod doctor;
 mod dump;
 mod outputs;
 mod picture;
+mod preview;
 mod probe;
 mod progress;
 mod render;
@@ -130,6 +131,8 @@ enum Command {
     Dump(dump::Args),
     /// Explain one pixel: its rays, what they met, what the lights add, its colour
     Probe(probe::Args),
+    /// Show a scene in a window that follows its file, and change it there
+    Preview(preview::Args),
     /// Compare two pictures; exit 1 if they differ
     Compare(compare::Args),
     /// Measure every way to render scenes: the error against the time
@@ -172,6 +175,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Dump(args)) => dump::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
+        Some(Command::Preview(args)) => preview::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Doctor(args)) => doctor::run(&args),

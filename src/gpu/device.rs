@@ -97,6 +97,31 @@ pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
     Ok(gpu)
 }
 
+/// A device for a window, with what else a window is made from.
+#[derive(Debug)]
+pub struct Opened {
+    /// The device.
+    pub gpu: Gpu,
+    /// What adapters and surfaces come from.
+    pub instance: wgpu::Instance,
+    /// The adapter that it was opened on.
+    pub adapter: wgpu::Adapter,
+}
+
+/// The same as [`open`], for a window.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
+    let (instance, adapters) = enumerate();
+    let adapter = choose(&adapters, wanted)?.clone();
+    Ok(Opened {
+        gpu: open_adapter(&adapter)?,
+        instance,
+        adapter,
+    })
+}
+
 fn open_adapter(adapter: &wgpu::Adapter) -> Result<Gpu, GpuError> {
     let start = Instant::now();
     let info = adapter.get_info();

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::certify::Stage;
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
-use crate::render::{Backend, Precision, Report, Settings, render};
+use crate::render::{Backend, Live, Precision, Report, Settings, render_live};
 use crate::scene::Scene;
 
 /// What the GPU says of a pixel.
@@ -37,9 +37,10 @@ pub(super) fn ask(
     x: u32,
     y: u32,
 ) -> Verdict {
-    if let Err(error) = gpu {
-        return Verdict::Unknown(error.to_string());
-    }
+    let live = match gpu {
+        Ok(gpu) => Live::on(gpu),
+        Err(error) => return Verdict::Unknown(error.to_string()),
+    };
     let settings = Settings {
         rows: Some(y..y + 1),
         backend: Backend::Gpu,
@@ -50,7 +51,7 @@ pub(super) fn ask(
     };
     let x = x as usize;
     let mut verdict = None;
-    let rendered = render(scene, &settings, &mut |band| {
+    let rendered = render_live(scene, &settings, &live, &mut |band| {
         let stage = band.verdicts.as_ref().and_then(|stages| stages.get(x));
         let bytes = band.rgb.as_chunks::<3>().0.get(x);
         verdict = stage.copied().zip(bytes.copied());

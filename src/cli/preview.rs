@@ -1,0 +1,81 @@
+//! `plumb preview`: a scene in a window that follows its file. Without the feature `preview`: how to get it.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::builder::NonEmptyStringValueParser;
+
+use super::Answer;
+use super::args::PictureOptions;
+
+/// What `plumb preview` takes.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+The window shows the picture that `plumb render` makes of the scene: at once in
+fast precision, then, when nothing has moved for a moment, certified. Whenever
+the file is written, the picture follows; a file with a mistake leaves the last
+good picture, with the mistake over it.
+
+  drag, wheel    move the viewpoint: x and y, z
+  Ctrl+wheel     zoom, up to the bytes of single pixels
+  F1             all keys
+
+What is changed in the window (the viewpoint, colours, lights, spheres) lies on
+top of the file; Ctrl+S writes the numbers into the file and touches nothing
+else in it.
+
+EXAMPLES
+  plumb preview scene.txt
+  plumb preview scene.txt --size 1280x960 --samples 16")]
+pub(crate) struct Args {
+    /// The scene file
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) picture: PictureOptions,
+    /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`)
+    #[arg(long, value_name = "PART", value_parser = NonEmptyStringValueParser::new())]
+    pub(crate) adapter: Option<String>,
+}
+
+/// Shows the scene until the window is closed.
+#[cfg(feature = "preview")]
+pub(crate) fn run(args: &Args) -> Result<Answer> {
+    use anyhow::bail;
+    use plumb::preview::{Options, run};
+    use plumb::render::Settings;
+
+    use super::{SOFTWARE, cache, source};
+
+    if source::is_stdin(&args.scene) {
+        bail!("a window follows a file, and stdin is none: save the scene, and name its file");
+    }
+    // What cannot be read now is told here, where it is asked for; mistakes in it are shown in the window.
+    match plumb::scene::load(&args.scene) {
+        Ok(mut scene) => {
+            args.picture.apply(&mut scene);
+            args.picture.check(&scene)?;
+        }
+        Err(plumb::scene::LoadError::Scene(_)) => {}
+        Err(error) => return Err(error.into()),
+    }
+    run(Options {
+        path: args.scene.clone(),
+        size: args.picture.size,
+        settings: Settings {
+            adapter: args.adapter.clone(),
+            cache: cache::folder(),
+            ..args.picture.settings()
+        },
+        software: SOFTWARE,
+    })?;
+    Ok(Answer::Yes)
+}
+
+/// Says how to get the window.
+#[cfg(not(feature = "preview"))]
+pub(crate) fn run(_args: &Args) -> Result<Answer> {
+    anyhow::bail!(
+        "this plumb was built without its window: `cargo build --release --features preview` builds one with it \
+         (it takes twice as long); `plumb render SCENE -o picture.png` makes the picture without a window"
+    )
+}

@@ -1,0 +1,177 @@
+//! What the keys and the mouse do: one table for the window and for the help that F1 shows.
+
+use eframe::egui::{Context, Key, Modifiers};
+
+/// What a key asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Command {
+    /// The viewpoint to the right and up, by so many steps.
+    Step([f64; 2]),
+    /// The viewpoint away from the screen, by so many steps.
+    Away(f64),
+    /// The viewpoint of the file.
+    Reset,
+    /// The picture as large as fits.
+    Fit,
+    /// A pixel of the picture for each of the window.
+    OneToOne,
+    /// Larger or smaller.
+    Zoom(bool),
+    /// What decided each pixel, over the picture.
+    Verdicts,
+    /// The inspector.
+    Inspector,
+    /// Objects, materials and lights.
+    Side,
+    /// Lets go of the pixel that is held, closes what is open.
+    Escape,
+    /// The camera's block to the clipboard.
+    CopyCamera,
+    /// The changes into the file.
+    SaveChanges,
+    /// The picture into a file.
+    SavePicture,
+    /// Reads the file and its textures again.
+    Reload,
+    /// Light or dark.
+    Theme,
+    /// This help.
+    Help,
+    /// Closes the window.
+    Quit,
+}
+
+/// A key that does something.
+pub(super) struct Binding {
+    key: Key,
+    command: Command,
+    with_command: bool,
+    with_shift: Option<bool>,
+}
+
+const fn key(key: Key, command: Command) -> Binding {
+    Binding {
+        key,
+        command,
+        with_command: false,
+        with_shift: None,
+    }
+}
+
+const fn with(key: Key, command: Command) -> Binding {
+    Binding {
+        key,
+        command,
+        with_command: true,
+        with_shift: None,
+    }
+}
+
+const fn shift(shift: bool, key: Key, command: Command) -> Binding {
+    Binding {
+        key,
+        command,
+        with_command: false,
+        with_shift: Some(shift),
+    }
+}
+
+/// All keys. Where the same stands twice, Shift tells them apart.
+const BINDINGS: &[Binding] = &[
+    shift(false, Key::ArrowLeft, Command::Step([-1.0, 0.0])),
+    shift(false, Key::ArrowRight, Command::Step([1.0, 0.0])),
+    shift(false, Key::ArrowUp, Command::Step([0.0, 1.0])),
+    shift(false, Key::ArrowDown, Command::Step([0.0, -1.0])),
+    shift(true, Key::ArrowLeft, Command::Step([-0.1, 0.0])),
+    shift(true, Key::ArrowRight, Command::Step([0.1, 0.0])),
+    shift(true, Key::ArrowUp, Command::Step([0.0, 0.1])),
+    shift(true, Key::ArrowDown, Command::Step([0.0, -0.1])),
+    shift(false, Key::PageUp, Command::Away(1.0)),
+    shift(false, Key::PageDown, Command::Away(-1.0)),
+    shift(true, Key::PageUp, Command::Away(0.1)),
+    shift(true, Key::PageDown, Command::Away(-0.1)),
+    key(Key::Home, Command::Reset),
+    key(Key::R, Command::Reset),
+    key(Key::F, Command::Fit),
+    key(Key::Num0, Command::Fit),
+    key(Key::Num1, Command::OneToOne),
+    key(Key::Plus, Command::Zoom(true)),
+    key(Key::Equals, Command::Zoom(true)),
+    key(Key::Minus, Command::Zoom(false)),
+    key(Key::V, Command::Verdicts),
+    key(Key::I, Command::Inspector),
+    key(Key::O, Command::Side),
+    key(Key::Escape, Command::Escape),
+    with(Key::C, Command::CopyCamera),
+    key(Key::C, Command::CopyCamera),
+    with(Key::S, Command::SaveChanges),
+    key(Key::P, Command::SavePicture),
+    key(Key::F5, Command::Reload),
+    key(Key::T, Command::Theme),
+    key(Key::F1, Command::Help),
+    key(Key::Questionmark, Command::Help),
+    with(Key::Q, Command::Quit),
+    with(Key::W, Command::Quit),
+];
+
+/// What F1 shows: what to press or do, and what it does.
+pub(super) const HELP: &[(&str, &str)] = &[
+    ("drag", "the viewpoint, x and y"),
+    ("wheel", "the viewpoint's z; also Page up, Page down"),
+    ("arrows", "steps of the viewpoint; with Shift a tenth"),
+    ("R, Home", "the file's viewpoint again"),
+    (
+        "Ctrl+wheel, + −",
+        "zoom, up to 64 times with the bytes of each pixel",
+    ),
+    ("right or middle drag", "move the enlarged picture"),
+    ("F, 0", "the picture as large as fits"),
+    ("1", "pixel for pixel"),
+    ("click", "hold a pixel in the inspector; Esc lets go"),
+    ("I", "the inspector: what `plumb probe` tells of a pixel"),
+    ("O", "objects, materials, lights"),
+    (
+        "V",
+        "what decided each pixel, as `plumb render --verdicts` paints it",
+    ),
+    (
+        "C",
+        "copy the camera, as shown, as a block for a scene file",
+    ),
+    ("Ctrl+S", "write what was changed into the scene file"),
+    ("P", "save the picture, certified: .png, .ppm or .exr"),
+    ("F5", "read the file and its textures again"),
+    ("T", "light or dark"),
+    ("F1", "this"),
+    ("Ctrl+Q", "close"),
+];
+
+/// The commands of the keys that were pressed, unless a field of text has them.
+pub(super) fn pressed(context: &Context) -> Vec<Command> {
+    if context.egui_wants_keyboard_input() {
+        return Vec::new();
+    }
+    context.input(|input| {
+        let Modifiers {
+            shift,
+            command,
+            alt,
+            ..
+        } = input.modifiers;
+        let mut commands = Vec::new();
+        for binding in BINDINGS {
+            let matches = binding.with_command == command
+                && !alt
+                && binding.with_shift.is_none_or(|wanted| wanted == shift);
+            if matches && input.key_pressed(binding.key) {
+                commands.push(binding.command);
+            }
+        }
+        // egui makes an event of its own of Ctrl+C.
+        let copies = |event: &eframe::egui::Event| matches!(event, eframe::egui::Event::Copy);
+        if input.events.iter().any(copies) {
+            commands.push(Command::CopyCamera);
+        }
+        commands
+    })
+}

@@ -1,0 +1,122 @@
+//! How large a picture may be that has to be there at once: in lower resolution where the whole one takes too long.
+//!
+//! Learns from what the last pictures took; the worker asks.
+
+/// A picture that takes no longer than so many seconds is rendered as large as it is.
+const QUICK: f64 = 0.15;
+/// A smaller one is made to take about so many seconds.
+const AIM: f64 = 0.08;
+/// Pictures are made smaller at most so many times in each direction.
+const MOST: u32 = 16;
+
+/// What pictures of a scene took lately.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ladder {
+    /// Seconds that any picture takes, however small, such as for compiling: the least that one took.
+    least: Option<f64>,
+    /// Seconds of the whole picture.
+    whole: Option<f64>,
+}
+
+impl Ladder {
+    /// How many times smaller in each direction the first picture should be.
+    pub(super) fn first(&self) -> u32 {
+        match self.whole {
+            // Whoever renders has to look at the clock.
+            None => 1,
+            Some(whole) if whole <= QUICK => 1,
+            Some(whole) => {
+                let fixed = self.least.unwrap_or(0.0).min(AIM / 2.0);
+                let times = (whole - fixed) / (AIM - fixed);
+                (times.sqrt().ceil() as u32).clamp(2, MOST)
+            }
+        }
+    }
+
+    /// How long a first picture, as large as it is, may take before it is given up for a smaller one: none if that is known
+    /// to be quick.
+    pub(super) fn patience(&self) -> Option<f64> {
+        self.whole.is_none().then_some(QUICK)
+    }
+
+    /// A picture so many times smaller took so long.
+    pub(super) fn took(&mut self, smaller: u32, seconds: f64) {
+        self.least = Some(self.least.map_or(seconds, |least| least.min(seconds)));
+        if smaller == 1 {
+            self.whole = Some(seconds);
+        } else if let Some(whole) = &mut self.whole {
+            // It was quick after all, or became so: the whole one is tried again where this says so.
+            let at_most = seconds * f64::from(smaller * smaller);
+            *whole = whole.min(at_most);
+        }
+    }
+
+    /// A whole picture was given up after so long, when this share of it was done.
+    pub(super) fn gave_up(&mut self, seconds: f64, share: f64) {
+        let whole = seconds / share.clamp(1e-3, 1.0);
+        self.whole = Some(whole.max(1.01 * QUICK));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quick_scene_is_never_made_smaller() {
+        let mut ladder = Ladder::default();
+        assert_eq!((ladder.first(), ladder.patience()), (1, Some(QUICK)));
+        ladder.took(1, 0.06);
+        assert_eq!((ladder.first(), ladder.patience()), (1, None));
+        ladder.took(1, 0.149);
+        assert_eq!(ladder.first(), 1);
+    }
+
+    #[test]
+    fn a_slow_scene_begins_small_and_takes_about_as_long_as_it_may() {
+        // So long for compiling, and so long a picture.
+        for (fixed, whole) in [(0.0, 1.0), (0.03, 0.3), (0.05, 4.0), (0.02, 60.0)] {
+            let seconds = |smaller: u32| fixed + whole / f64::from(smaller * smaller);
+            let mut ladder = Ladder::default();
+            ladder.gave_up(0.2, 0.2 / seconds(1));
+            for _ in 0..5 {
+                let smaller = ladder.first();
+                assert!(smaller > 1, "{fixed} {whole}");
+                ladder.took(smaller, seconds(smaller));
+            }
+            let smaller = ladder.first();
+            assert!(
+                seconds(smaller) <= 0.13 || smaller == MOST,
+                "{fixed} {whole} {smaller}"
+            );
+            // No smaller than it has to be.
+            assert!(
+                smaller <= 2 || seconds(smaller - 1) > 0.07,
+                "{fixed} {whole} {smaller}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_scene_that_became_quick_is_noticed() {
+        let mut ladder = Ladder::default();
+        ladder.took(1, 2.0);
+        assert!(ladder.first() > 4);
+        // An edit removed what made it slow.
+        while ladder.first() > 1 {
+            let smaller = ladder.first();
+            ladder.took(smaller, 0.02);
+            assert!(ladder.first() < smaller);
+        }
+        ladder.took(1, 0.02);
+        assert_eq!(ladder.first(), 1);
+    }
+
+    #[test]
+    fn a_scene_that_became_slow_is_noticed() {
+        let mut ladder = Ladder::default();
+        ladder.took(1, 0.05);
+        ladder.took(1, 3.0);
+        assert!(ladder.first() > 4);
+    }
+}

@@ -1,0 +1,117 @@
+//! What lies over the picture: the file's trouble, the help, and where to save the picture.
+
+use eframe::egui::{self, Align2, Context, RichText, Ui};
+
+use super::keys::HELP;
+use super::session::Trouble;
+
+/// Shows what is wrong with the file, over the upper part of the picture, which stays.
+pub(super) fn trouble(ui: &mut Ui, area: egui::Rect, trouble: &Trouble, picture: bool) {
+    let (title, text) = match trouble {
+        Trouble::Mistakes(text) => ("The file has a mistake", text.as_str()),
+        Trouble::Gone => ("The file is gone", "It is shown again once it is back."),
+        Trouble::Unreadable(why) => ("The file cannot be read", why.as_str()),
+    };
+    let title = if picture {
+        format!("{title}: this is its last good picture")
+    } else {
+        title.to_owned()
+    };
+    let color = ui.visuals().error_fg_color;
+    egui::Area::new(egui::Id::unique("trouble"))
+        .fixed_pos(area.left_top() + egui::vec2(8.0, 8.0))
+        .constrain_to(area)
+        .order(egui::Order::Middle)
+        .show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style())
+                .stroke(egui::Stroke::new(2.0, color))
+                .show(ui, |ui| {
+                    ui.set_max_width(area.width() - 40.0);
+                    ui.label(RichText::new(title).strong().color(color));
+                    egui::ScrollArea::both()
+                        .max_height(area.height() * 0.6)
+                        .show(ui, |ui| {
+                            ui.add(egui::Label::new(RichText::new(text).monospace()).extend());
+                        });
+                });
+        });
+}
+
+/// Shows what keys and mouse do.
+pub(super) fn help(context: &Context, open: &mut bool) {
+    egui::Window::new("Keys and mouse")
+        .open(open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .show(context, |ui| {
+            egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
+                for (what, does) in HELP {
+                    ui.label(RichText::new(*what).strong());
+                    ui.label(*does);
+                    ui.end_row();
+                }
+            });
+        });
+}
+
+/// Where to save the picture.
+#[derive(Debug, Default)]
+pub(super) struct SaveAs {
+    /// The name as it is typed.
+    pub(super) name: String,
+    /// Whether the field has to be given the keyboard.
+    fresh: bool,
+}
+
+/// What came of asking.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Chosen {
+    /// Nothing yet.
+    Open,
+    /// To save there.
+    Save,
+    /// Not to save.
+    Cancel,
+}
+
+impl SaveAs {
+    /// With a name to begin with.
+    pub(super) fn new(name: String) -> Self {
+        Self { name, fresh: true }
+    }
+
+    /// Asks where to.
+    pub(super) fn show(&mut self, context: &Context) -> Chosen {
+        let mut open = true;
+        let mut chosen = Chosen::Open;
+        egui::Window::new("Save the picture, certified")
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false)
+            .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+            .show(context, |ui| {
+                ui.label(
+                    "Its name ends in .png, .ppm or .exr (the values before they become bytes):",
+                );
+                let field = egui::TextEdit::singleline(&mut self.name).desired_width(420.0);
+                let field = ui.add(field);
+                if std::mem::take(&mut self.fresh) {
+                    field.request_focus();
+                }
+                let entered =
+                    field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+                ui.horizontal(|ui| {
+                    if ui.button("Save").clicked() || entered {
+                        chosen = Chosen::Save;
+                    }
+                    if ui.button("Cancel").clicked()
+                        || ui.input(|input| input.key_pressed(egui::Key::Escape))
+                    {
+                        chosen = Chosen::Cancel;
+                    }
+                });
+            });
+        if open { chosen } else { Chosen::Cancel }
+    }
+}

@@ -1,0 +1,87 @@
+// Draws a picture from its buffer: each pixel of the window takes a word, and shows its bytes as they are.
+
+struct View {
+    // Where the picture's top left corner is, in pixels of the window.
+    origin: vec2i,
+    // Columns and rows that the picture is drawn as; of the buffer; of the buffer of objects.
+    size: vec2u,
+    canvas: vec2u,
+    marked: vec2u,
+    // Pixels of the window for each of the picture, and the same as a whole number; 0 where it is none.
+    zoom: f32,
+    times: u32,
+    // Whether to paint what decided each pixel.
+    verdicts: u32,
+    // Whether what is written is light, and not a byte of a picture.
+    linear: u32,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+// Red, green, blue from the lowest byte up, and what decided them.
+@group(0) @binding(1) var<storage, read> pixels: array<u32>;
+// What each pixel sees: the number of an object, from 1; 0 is nothing.
+@group(0) @binding(2) var<storage, read> objects: array<u32>;
+// A bit for each of these numbers, from the lowest up: whether the object is to be outlined.
+@group(0) @binding(3) var<storage, read> chosen: array<u32>;
+
+@vertex
+fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    // A triangle larger than the window.
+    return vec4f(vec2f(f32(i & 1u), f32(i >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// The pixel of the picture at a pixel of the window; outside where it is not below `view.size`.
+fn pixel_at(at: vec2i) -> vec2u {
+    let offset = at - view.origin;
+    if any(offset < vec2i(0)) {
+        return vec2u(0xffffffffu);
+    }
+    if view.times > 0u {
+        return vec2u(offset) / view.times;
+    }
+    return vec2u((vec2f(offset) + 0.5) / view.zoom);
+}
+
+// The place of a pixel in a buffer that may have fewer.
+fn place(pixel: vec2u, size: vec2u) -> u32 {
+    var at = pixel;
+    if any(size != view.size) {
+        at = min(vec2u((vec2f(pixel) + 0.5) * vec2f(size) / vec2f(view.size)), size - 1u);
+    }
+    return at.y * size.x + at.x;
+}
+
+fn is_chosen(at: vec2i) -> bool {
+    let pixel = pixel_at(at);
+    if any(pixel >= view.size) {
+        return false;
+    }
+    let object = objects[place(pixel, view.marked)];
+    return (chosen[object / 32u] >> (object % 32u) & 1u) != 0u;
+}
+
+fn light(byte: vec3f) -> vec3f {
+    return select(pow((byte + 0.055) / 1.055, vec3f(2.4)), byte / 12.92, byte <= vec3f(0.04045));
+}
+
+@fragment
+fn color(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let at = vec2i(position.xy);
+    let pixel = pixel_at(at);
+    if any(pixel >= view.size) {
+        discard;
+    }
+    let word = pixels[place(pixel, view.canvas)];
+    var bytes = vec3f(vec3u(word, word >> 8u, word >> 16u) & vec3u(255u));
+    if view.verdicts != 0u {
+        bytes = verdict(word >> 24u, bytes);
+    }
+    if view.marked.x > 0u {
+        let inside = is_chosen(at);
+        let border = inside != is_chosen(at + vec2i(2, 0)) | inside != is_chosen(at - vec2i(2, 0))
+            | inside != is_chosen(at + vec2i(0, 2)) | inside != is_chosen(at - vec2i(0, 2));
+        bytes = select(bytes, vec3f(255.0, 140.0, 0.0), border);
+    }
+    let color = bytes / 255.0;
+    return vec4f(select(color, light(color), view.linear != 0u), 1.0);
+}

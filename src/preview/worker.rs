@@ -1,0 +1,397 @@
+//! The thread that renders what the window wants to show: at once and small if need be, then whole, then certified.
+//!
+//! Between the window, which leaves [`Wish`]es, and `render`, which makes the pictures. The newest wish wins: what is under way
+//! for an older one is given up, but for the first picture of each, without which a steady drag would show nothing.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::ladder::Ladder;
+use super::newest::{Newest, Taker, newest};
+use crate::edit::Changes;
+use crate::frame::Stage;
+use crate::gpu::GpuError;
+use crate::gpu::canvas::{Canvas, Scatter};
+use crate::gpu::device::Gpu;
+use crate::render::{self, Backend, Live, Precision, Report, Settings, render_live};
+use crate::scene::Scene;
+
+/// A picture is certified once nothing was asked for so long.
+pub(super) const STILL: Duration = Duration::from_millis(150);
+/// Seconds that a dispatch is to take: the window's own frames wait behind two of them.
+const DISPATCH: f64 = 0.015;
+/// A first picture is not given up for a newer one before so many seconds.
+const FIRST: f64 = 0.25;
+/// Most pixels that are shown; a larger picture is shown smaller.
+const MOST: u64 = 16 << 20;
+
+/// What is to be shown.
+#[derive(Debug, Clone)]
+pub(super) struct Wish {
+    /// The scene as the file has it.
+    pub(super) scene: Arc<Scene>,
+    /// What is changed on top of it.
+    pub(super) changes: Changes,
+    /// When it was wished for.
+    pub(super) since: Instant,
+}
+
+/// A picture on the GPU, with what is known of it.
+#[derive(Debug)]
+pub(super) struct Picture {
+    /// The number of its wish.
+    pub(super) number: u64,
+    /// The scene that it shows, changes and all; its pixeldim is the size that is shown.
+    pub(super) scene: Arc<Scene>,
+    /// Columns and rows as the file says, if that is more than can be shown.
+    pub(super) whole: [u32; 2],
+    /// The picture, perhaps of fewer pixels.
+    pub(super) canvas: Arc<Canvas>,
+    /// Its bytes, rows from the top.
+    pub(super) rgb: Vec<u8>,
+    /// What decided its pixels, in the same order.
+    pub(super) stages: Vec<Stage>,
+    /// Whether its bytes are certified.
+    pub(super) precision: Precision,
+    /// How it was rendered.
+    pub(super) report: Report,
+    /// Seconds from the wish to the picture; of a certified one, without the rest before.
+    pub(super) seconds: f64,
+}
+
+/// What the worker tells.
+#[derive(Debug)]
+pub(super) enum News {
+    /// A picture is there.
+    Picture(Box<Picture>),
+    /// A wish cannot be fulfilled.
+    Failed {
+        /// The number of the wish.
+        number: u64,
+        /// Why.
+        why: String,
+    },
+}
+
+/// What is being rendered, for the status line: written by the worker, read by the window.
+#[derive(Debug, Default)]
+pub(super) struct Progress {
+    /// Rows that are done, in thousandths of all; 1000 where nothing is rendered.
+    thousandths: AtomicU32,
+}
+
+impl Progress {
+    /// The share of the picture under way that is done; none where none is under way.
+    pub(super) fn share(&self) -> Option<f32> {
+        let done = self.thousandths.load(Ordering::Relaxed);
+        (done < 1000).then_some(done as f32 / 1000.0)
+    }
+
+    fn set(&self, thousandths: u32) {
+        self.thousandths.store(thousandths, Ordering::Relaxed);
+    }
+}
+
+/// The worker, as the window has it. Dropped, it ends soon.
+#[derive(Debug)]
+pub(super) struct Worker {
+    wishes: Option<Newest<Wish>>,
+    thread: Option<JoinHandle<()>>,
+    /// How far the picture under way is.
+    pub(super) progress: Arc<Progress>,
+}
+
+impl Worker {
+    /// Begins to work on this device. `tell` is called on the worker's thread.
+    ///
+    /// # Errors
+    /// If the thread cannot be started.
+    pub(super) fn new(
+        gpu: Arc<Gpu>,
+        scatter: Scatter,
+        settings: Settings,
+        tell: impl FnMut(News) + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let (wishes, taker) = newest();
+        let progress = Arc::new(Progress::default());
+        progress.set(1000);
+        let work = Work {
+            gpu,
+            scatter,
+            settings,
+            taker,
+            progress: Arc::clone(&progress),
+            ladder: Ladder::default(),
+            canvases: Vec::new(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("render".into())
+            .spawn(move || work.run(tell))?;
+        Ok(Self {
+            wishes: Some(wishes),
+            thread: Some(thread),
+            progress,
+        })
+    }
+
+    /// Wishes for something else to be shown. Returns the number that its pictures will have.
+    pub(super) fn wish(&self, wish: Wish) -> u64 {
+        self.wishes.as_ref().map_or(0, |wishes| wishes.put(wish))
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.wishes = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic of the worker was printed when it happened.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The worker's own side.
+struct Work {
+    gpu: Arc<Gpu>,
+    scatter: Scatter,
+    settings: Settings,
+    taker: Taker<Wish>,
+    progress: Arc<Progress>,
+    ladder: Ladder,
+    /// Canvases to be used again once nobody shows them.
+    canvases: Vec<Arc<Canvas>>,
+}
+
+/// A wish that is being worked on.
+struct Job {
+    number: u64,
+    /// The scene, its picture no larger than can be shown.
+    scene: Arc<Scene>,
+    /// Columns and rows of its picture as the file says.
+    whole: [u32; 2],
+}
+
+/// Why a picture was not made.
+enum Unmade {
+    /// Nobody wants it any more, or it took too long; this share of it was done.
+    GivenUp(f64),
+    Failed(String),
+}
+
+impl Work {
+    fn run(mut self, mut tell: impl FnMut(News)) {
+        while let Some((number, wish)) = self.taker.take() {
+            if let Err(Unmade::Failed(why)) = self.fulfil(number, &wish, &mut tell) {
+                tell(News::Failed { number, why });
+            }
+            self.progress.set(1000);
+        }
+    }
+
+    fn fulfil(
+        &mut self,
+        number: u64,
+        wish: &Wish,
+        tell: &mut impl FnMut(News),
+    ) -> Result<(), Unmade> {
+        let scene = if wish.changes.is_empty() {
+            Arc::clone(&wish.scene)
+        } else {
+            Arc::new(wish.changes.apply(&wish.scene))
+        };
+        let most = MOST.min(Canvas::most(&self.gpu));
+        let whole = scene.camera.pixeldim;
+        let job = Job {
+            number,
+            scene: sized(&scene, smaller(whole, most)).map_or(scene, Arc::new),
+            whole,
+        };
+        let mut first = self.ladder.first();
+        let patience = self.ladder.patience();
+        loop {
+            let started = Instant::now();
+            let patience = patience.filter(|_| first == 1);
+            let made = self.make(&job, first, Precision::Fast, |old| {
+                let seconds = started.elapsed().as_secs_f64();
+                patience.is_some_and(|most| seconds > most) || old && seconds > FIRST
+            });
+            let seconds = started.elapsed().as_secs_f64();
+            match made {
+                Ok(picture) => {
+                    self.ladder.took(first, seconds);
+                    tell(done(picture, wish.since.elapsed()));
+                    break;
+                }
+                Err(Unmade::GivenUp(share)) if first == 1 => {
+                    self.ladder.gave_up(seconds, share);
+                    if self.taker.is_old(number) {
+                        return Ok(());
+                    }
+                    first = self.ladder.first();
+                }
+                Err(unmade) => return Err(unmade),
+            }
+        }
+        if first > 1 {
+            let started = Instant::now();
+            let picture = self.make(&job, 1, Precision::Fast, |old| old)?;
+            self.ladder.took(1, started.elapsed().as_secs_f64());
+            tell(done(picture, wish.since.elapsed()));
+        }
+        self.progress.set(1000);
+        if !self.taker.rest(number, wish.since + STILL) {
+            return Ok(());
+        }
+        let started = Instant::now();
+        let picture = self.make(&job, 1, Precision::Certified, |old| old)?;
+        tell(done(picture, started.elapsed()));
+        Ok(())
+    }
+
+    /// Renders a picture, `smaller` times smaller in each direction; `stop` is told whether the wish is old.
+    fn make(
+        &mut self,
+        job: &Job,
+        smaller: u32,
+        precision: Precision,
+        stop: impl Fn(bool) -> bool + Sync,
+    ) -> Result<Picture, Unmade> {
+        let small = sized(&job.scene, smaller);
+        let scene = small.as_ref().unwrap_or(&job.scene);
+        let [width, height] = scene.camera.pixeldim;
+        let canvas = self.canvas([width, height])?;
+        let mut settings = Settings {
+            precision,
+            backend: Backend::Auto,
+            verdicts: true,
+            ..self.settings.clone()
+        };
+        let stop = || stop(self.taker.is_old(job.number));
+        let live = Live {
+            gpu: &self.gpu,
+            canvas: Some(&canvas),
+            dispatch_seconds: DISPATCH,
+            stop: &stop,
+        };
+        loop {
+            let pixels = width as usize * height as usize;
+            let mut rgb = Vec::with_capacity(3 * pixels);
+            let mut stages = Vec::with_capacity(pixels);
+            let mut trouble = None;
+            let rendered = render_live(scene, &settings, &live, &mut |band| {
+                if let Err(error) = self.scatter.put(&self.gpu, &canvas, band) {
+                    trouble = Some(error);
+                    return Err(std::io::Error::other("the GPU's fault"));
+                }
+                rgb.extend_from_slice(&band.rgb);
+                stages.extend(band.verdicts.iter().flatten());
+                let done = u64::from(height - band.rows.start) * 999 / u64::from(height);
+                self.progress.set(done as u32);
+                Ok(())
+            });
+            return match (rendered, trouble) {
+                (Ok(report), _) => Ok(Picture {
+                    number: job.number,
+                    scene: Arc::clone(&job.scene),
+                    whole: job.whole,
+                    canvas,
+                    rgb,
+                    stages,
+                    precision,
+                    report,
+                    seconds: 0.0,
+                }),
+                (Err(render::Error::Stopped), _) => {
+                    Err(Unmade::GivenUp(stages.len() as f64 / pixels as f64))
+                }
+                // Rows that were handed on are wrong: all of it again, by the CPU.
+                (Err(render::Error::Revoked(_)), _) if settings.backend == Backend::Auto => {
+                    settings.backend = Backend::Cpu;
+                    continue;
+                }
+                (Err(_), Some(error)) => Err(error.into()),
+                (Err(error), None) => Err(Unmade::Failed(error.to_string())),
+            };
+        }
+    }
+
+    /// A canvas that nobody shows.
+    fn canvas(&mut self, size: [u32; 2]) -> Result<Arc<Canvas>, GpuError> {
+        // Those of another size are of no use soon; those that are shown live as long as they are.
+        self.canvases
+            .retain(|canvas| canvas.size == size || Arc::strong_count(canvas) > 1);
+        let mut free = self.canvases.iter().filter(|canvas| canvas.size == size);
+        if let Some(canvas) = free.find(|canvas| Arc::strong_count(canvas) == 1) {
+            return Ok(Arc::clone(canvas));
+        }
+        let canvas = Arc::new(Canvas::new(&self.gpu, size)?);
+        self.canvases.push(Arc::clone(&canvas));
+        Ok(canvas)
+    }
+}
+
+impl From<GpuError> for Unmade {
+    fn from(error: GpuError) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+fn done(picture: Picture, took: Duration) -> News {
+    News::Picture(Box::new(Picture {
+        seconds: took.as_secs_f64(),
+        ..picture
+    }))
+}
+
+/// The scene with a picture so many times smaller in each direction; none if that is the scene itself.
+fn sized(scene: &Scene, smaller: u32) -> Option<Scene> {
+    (smaller > 1).then(|| {
+        let mut scene = scene.clone();
+        scene.camera.pixeldim = scene.camera.pixeldim.map(|pixels| pixels.div_ceil(smaller));
+        scene
+    })
+}
+
+/// How many times smaller in each direction a picture has to be to have so many pixels at most.
+fn smaller(pixeldim: [u32; 2], most: u64) -> u32 {
+    let pixels = |smaller: u32| {
+        let [width, height] = pixeldim.map(|pixels| u64::from(pixels.div_ceil(smaller)));
+        width * height
+    };
+    let [width, height] = pixeldim.map(f64::from);
+    let mut smaller = ((width * height / most as f64).sqrt() as u32).max(1);
+    while pixels(smaller) > most {
+        smaller += 1;
+    }
+    smaller
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_as_large_as_they_may_be() {
+        assert_eq!(smaller([640, 480], MOST), 1);
+        assert_eq!(smaller([4096, 4096], MOST), 1);
+        assert_eq!(smaller([4097, 4096], MOST), 2);
+        for pixeldim in [
+            [1_000_000, 1_000_000],
+            [1_000_000, 17],
+            [3, 999_999],
+            [32768, 32768],
+        ] {
+            let k = smaller(pixeldim, MOST);
+            let pixels = |k: u32| {
+                pixeldim
+                    .iter()
+                    .map(|n: &u32| u64::from(n.div_ceil(k)))
+                    .product::<u64>()
+            };
+            assert!(pixels(k) <= MOST, "{pixeldim:?} {k}");
+            assert!(k == 1 || pixels(k - 1) > MOST, "{pixeldim:?} {k}");
+        }
+    }
+}
