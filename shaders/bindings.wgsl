@@ -12,6 +12,16 @@ struct Job {
 //#else
     unused: u32,
 //#end
+//#if moving
+    // The camera, while it moves: the text stays the same then, and is compiled once.
+    camera_anchor: vec2i,
+    camera_step: vec2f,
+    camera_offset: vec2f,
+    camera_distance: f32,
+    camera_gain: f32,
+    unit: f32,
+    camera_unused: u32,
+//#end
 }
 
 @group(0) @binding(0) var<uniform> job: Job;

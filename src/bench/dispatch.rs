@@ -172,7 +172,7 @@ impl<'a> Runner<'a> {
             encoder.copy_buffer_to_buffer(resolved, 0, staging, 0, 16);
         }
         let start = Instant::now();
-        let index = gpu.queue.submit([encoder.finish()]);
+        let index = gpu.submit(encoder);
         self.staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
         if let Some([_, staging]) = &self.clock {
             staging.map_async(wgpu::MapMode::Read, .., |_| ());

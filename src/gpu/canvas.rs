@@ -138,6 +138,6 @@ impl Scatter {
             let groups = (words.len() as u32).div_ceil(GROUP);
             pass.dispatch_workgroups(groups.min(ACROSS), groups.div_ceil(ACROSS), 1);
         }
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit(encoder);
     }
 }

@@ -41,6 +41,16 @@ const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
 const TRACE: &str = include_str!("../../shaders/trace.wgsl");
 const WORLD: &str = include_str!("../../shaders/world.wgsl");
 
+/// Constants that are fields of `Job` while the camera moves.
+const MOVING: [(&str, &str); 6] = [
+    ("CAMERA_ANCHOR", "job.camera_anchor"),
+    ("CAMERA_STEP", "job.camera_step"),
+    ("CAMERA_OFFSET", "job.camera_offset"),
+    ("CAMERA_DISTANCE", "job.camera_distance"),
+    ("CAMERA_GAIN", "job.camera_gain"),
+    ("* UNIT)", "* job.unit)"),
+];
+
 /// Writes the shader for a packed scene.
 pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
     let procedural = if features.any_object() {
@@ -98,19 +108,25 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
         }),
         _ => unreachable!("shaders/ asks for the insertion `{name}`"),
     };
-    let mut text = constants(packed, features);
+    let mut text = String::new();
     for (file, _) in files.iter().filter(|(_, needed)| *needed) {
         text.push('\n');
         preprocess(file, &names, &insert, &mut text);
     }
-    text
+    if names.contains("moving") {
+        for (constant, field) in MOVING {
+            text = text.replace(constant, field);
+        }
+    }
+    constants(packed, features) + &text
 }
 
 /// The numbers that the text refers to by name.
 fn constants(packed: &Packed, features: &FeatureSet) -> String {
     let camera = &packed.camera;
     let mut lines = vec![format!("const WORKGROUP = {WORKGROUP};")];
-    if features.any_object() {
+    let names = features.names();
+    if features.any_object() && !names.contains("moving") {
         lines.push(format!(
             "const CAMERA_ANCHOR = vec2i({}, {});",
             camera.anchor[0], camera.anchor[1]
@@ -123,7 +139,6 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         ));
         lines.push(format!("const CAMERA_GAIN = {};", literal(camera.gain)));
     }
-    let names = features.names();
     if features.any_object() {
         lines.extend(error_constants(packed, &names));
     }
@@ -177,7 +192,7 @@ fn constants(packed: &Packed, features: &FeatureSet) -> String {
         count("world_sphere_loop", "WORLD_TREE", lit.in_tree);
         count("world_sphere_loop", "WORLD_SPHERES", lit.spheres.len());
         count("stack", "STACK", STACK);
-        if names.contains("lit") {
+        if names.contains("lit") && !names.contains("moving") {
             lines.push(format!("const UNIT = {};", literal(camera.unit)));
         }
     }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::GpuError;
 use super::compose::WORKGROUP;
 use super::selftest::{self, Outcome};
+use super::turn::Turn;
 
 /// An open device.
 #[derive(Debug)]
@@ -28,11 +29,16 @@ pub struct Gpu {
     pub lanes: u32,
     /// Seconds that loading the driver took, and opening the device.
     pub seconds: [f64; 2],
+    /// Whether work may be handed in.
+    pub turn: Turn,
     trouble: Arc<Mutex<Trouble>>,
 }
 
 /// Lanes of a software driver's vectors, 256 bits wide as a rule.
 pub const SOFTWARE_LANES: u32 = 8;
+
+/// How wgpu says that it could not set a surface up because the device did not come idle.
+const SURFACE_BUSY: &str = "before reconfiguring the Surface";
 
 /// What went wrong behind our back: wgpu reports some errors by callback.
 #[derive(Debug, Default)]
@@ -162,6 +168,7 @@ fn open_adapter(adapter: &wgpu::Adapter) -> Result<Gpu, GpuError> {
         timestamps,
         lanes,
         seconds: [0.0, device_seconds],
+        turn: Turn::default(),
         trouble,
     })
 }
@@ -173,6 +180,8 @@ fn watch(device: &wgpu::Device, trouble: &Arc<Mutex<Trouble>>) {
         let mut trouble = errors.lock().unwrap_or_else(PoisonError::into_inner);
         match error {
             wgpu::Error::OutOfMemory { source } => trouble.memory.get_or_insert(source.to_string()),
+            // A window's surface was to be set up anew while another thread handed in work: the next frame tries again.
+            other if other.to_string().contains(SURFACE_BUSY) => return,
             other => trouble.refused.get_or_insert(other.to_string()),
         };
     }));
@@ -226,6 +235,12 @@ impl Gpu {
             });
         self.check()?;
         Ok(pipeline)
+    }
+
+    /// Hands work in, once it is its [`turn`](Self::turn).
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
+        let work = encoder.finish();
+        self.turn.take(|| self.queue.submit([work]))
     }
 
     /// Waits for what was submitted, and for what is to be mapped after it.
@@ -282,7 +297,7 @@ impl Gpu {
             pass.dispatch_workgroups(across, down, 1);
         }
         encoder.copy_buffer_to_buffer(results, 0, &staging, 0, results.size());
-        let index = self.queue.submit([encoder.finish()]);
+        let index = self.submit(encoder);
         staging.map_async(wgpu::MapMode::Read, .., |_| ());
         self.wait(index)?;
         let view = staging

@@ -31,6 +31,8 @@ pub struct FeatureSet {
     pub unrolled: bool,
     /// An invocation makes four pixels side by side: of scenes so simple that storing is what costs.
     pub quad: bool,
+    /// The camera and all objects stand in buffers, so that another viewpoint is not another shader.
+    pub moving: bool,
     /// The kinds of surface.
     pub kinds: BTreeSet<Kind>,
     /// The unquantised values are wanted too.
@@ -121,6 +123,7 @@ impl FeatureSet {
                 && (1..=QUAD_OBJECTS[usize::from(certified)]).contains(&objects)
                 && settings.samples <= 1
                 && !settings.values,
+            moving: false,
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
             samples: settings.samples,
@@ -140,6 +143,17 @@ impl FeatureSet {
                 max_path: (settings.limits.max_path * two_to(-packed.scale)) as f32,
                 max_rays: settings.limits.max_rays,
             }),
+        }
+    }
+
+    /// The same with as little of the scene's numbers in the text as may be: for pictures of which each is a little different
+    /// from the one before. Not for certified ones, whose bounds are in the text.
+    #[must_use]
+    pub fn while_moving(self) -> Self {
+        Self {
+            unrolled: false,
+            moving: true,
+            ..self
         }
     }
 
@@ -223,6 +237,7 @@ impl FeatureSet {
                 certified && !is_lit && (tiled || textured || pplane || psphere),
             ),
             ("certified", certified),
+            ("moving", any && self.moving),
             (
                 "barrier",
                 is_lit || pplane || psphere || (certified && self.spheres),

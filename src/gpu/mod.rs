@@ -17,6 +17,7 @@ pub mod pack;
 pub mod pipeline;
 pub mod selftest;
 pub mod single;
+pub mod turn;
 
 /// What can go wrong on the way to or on the GPU.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,7 @@
 //! A composed shader compiled, and the packed scene in buffers bound to it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use bytemuck::{Pod, Zeroable as _};
@@ -9,7 +10,7 @@ use wgpu::util::DeviceExt as _;
 use super::GpuError;
 use super::device::Gpu;
 use super::features::{FeatureSet, QUAD};
-use super::pack::{LitObject, Object, Packed};
+use super::pack::{LitObject, MovingCamera, Object, Packed};
 
 /// A shader ready to run on a scene.
 #[derive(Debug)]
@@ -24,6 +25,8 @@ pub struct Pipeline {
     pub offsets: u32,
     /// Words of a record that the shader leaves of a pixel with sure and doubtful samples; 0 where it leaves none.
     pub partial_words: u32,
+    /// The camera, where the shader reads it from its job.
+    pub camera: Option<MovingCamera>,
     /// Seconds for compiling, and for packing and uploading.
     pub seconds: [f64; 2],
     buffers: Vec<(u32, wgpu::Buffer)>,
@@ -36,6 +39,16 @@ impl Pipeline {
         packed: &Packed,
         features: &FeatureSet,
         wgsl: &str,
+    ) -> Result<Self, GpuError> {
+        Self::with(gpu, packed, features, || gpu.compile(wgsl, "main"))
+    }
+
+    /// The same, with a shader that is compiled, or was.
+    pub(crate) fn with(
+        gpu: &Gpu,
+        packed: &Packed,
+        features: &FeatureSet,
+        compile: impl FnOnce() -> Result<wgpu::ComputePipeline, GpuError>,
     ) -> Result<Self, GpuError> {
         let start = Instant::now();
         let names = features.names();
@@ -52,7 +65,7 @@ impl Pipeline {
         }
         let upload_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let pipeline = gpu.compile(wgsl, "main")?;
+        let pipeline = compile()?;
         let compile_seconds = start.elapsed().as_secs_f64();
         Ok(Self {
             pipeline,
@@ -64,6 +77,7 @@ impl Pipeline {
                 0
             },
             partial_words: features.partial_words(),
+            camera: names.contains("moving").then(|| (&packed.camera).into()),
             seconds: [compile_seconds, upload_seconds],
             buffers,
         })
@@ -85,6 +99,43 @@ impl Pipeline {
             .iter()
             .map(|(binding, buffer)| (*binding, buffer));
         gpu.bind(&self.pipeline, &own.chain(scene).collect::<Vec<_>>())
+    }
+}
+
+/// Shaders compiled lately, by their texts.
+#[derive(Debug, Default)]
+pub struct Compiled {
+    /// The latest at the back.
+    pipelines: Mutex<VecDeque<(String, wgpu::ComputePipeline)>>,
+}
+
+/// So many shaders are kept.
+const KEPT: usize = 8;
+
+impl Compiled {
+    /// The pipeline of a shader's text, compiled if it is not there.
+    pub(crate) fn get(&self, gpu: &Gpu, wgsl: &str) -> Result<wgpu::ComputePipeline, GpuError> {
+        let lock = || {
+            self.pipelines
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        let mut pipelines = lock();
+        if let Some(place) = pipelines.iter().position(|(text, _)| text == wgsl)
+            && let Some((text, pipeline)) = pipelines.remove(place)
+        {
+            pipelines.push_back((text, pipeline.clone()));
+            return Ok(pipeline);
+        }
+        // Others may go on with theirs meanwhile.
+        drop(pipelines);
+        let pipeline = gpu.compile(wgsl, "main")?;
+        let mut pipelines = lock();
+        pipelines.push_back((wgsl.to_owned(), pipeline.clone()));
+        if pipelines.len() > KEPT {
+            pipelines.pop_front();
+        }
+        Ok(pipeline)
     }
 }
 

@@ -21,6 +21,7 @@ mod picture;
 mod save;
 mod screen;
 mod session;
+mod shell;
 mod side;
 mod status;
 mod values;
@@ -36,6 +37,8 @@ use eframe::egui_wgpu;
 use crate::gpu::{GpuError, device};
 use crate::settings::Settings;
 use app::App;
+use shell::Shell;
+use winit::event_loop::EventLoop;
 
 /// What to show.
 #[derive(Debug, Clone)]
@@ -89,6 +92,9 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
         device: gpu.device.clone(),
         queue: gpu.queue.clone(),
     };
+    let status = Arc::clone(&gpu);
+    let defaults = egui_wgpu::WgpuConfiguration::default();
+    let on_surface_status = Arc::clone(&defaults.on_surface_status);
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_app_id("plumb")
@@ -97,35 +103,56 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
             .with_min_inner_size([480.0, 320.0]),
         wgpu_options: egui_wgpu::WgpuConfiguration {
             wgpu_setup: setup.into(),
-            ..Default::default()
+            on_surface_status: Arc::new(move |surface| {
+                let action = on_surface_status(surface);
+                if matches!(action, egui_wgpu::SurfaceErrorAction::Reconfigure) {
+                    // That is done at once; the shell opens this again.
+                    status.turn.close();
+                }
+                action
+            }),
+            ..defaults
         },
         // Dithering would be the only thing on the screen that is not what it says.
         dithering: false,
         ..Default::default()
     };
-    let failed = Arc::new(Mutex::new(None));
-    let failure = Arc::clone(&failed);
+    let no_display = |error: winit::error::EventLoopError| PreviewError::NoDisplay {
+        reason: error.to_string(),
+    };
+    let events = EventLoop::<eframe::UserEvent>::with_user_event()
+        .build()
+        .map_err(no_display)?;
+    let started = Arc::new(Mutex::new(Err(String::from("no window was made"))));
+    let start = Arc::clone(&started);
     let device = Arc::clone(&gpu);
-    let ran = eframe::run_native(
+    let inner = eframe::create_native(
         "plumb",
         native,
-        Box::new(move |context| match App::new(context, device, options) {
-            Ok(app) => Ok(Box::new(app)),
-            Err(error) => {
-                *failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
-                Err(error.into())
+        Box::new(move |context| {
+            let app = App::new(context, device, options);
+            let mut start = start.lock().unwrap_or_else(PoisonError::into_inner);
+            match app {
+                Ok(app) => {
+                    *start = Ok(());
+                    Ok(Box::new(app))
+                }
+                Err(error) => {
+                    *start = Err(error.to_string());
+                    Err(error.into())
+                }
             }
         }),
+        &events,
     );
-    if let Some(reason) = failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        return Err(PreviewError::Window(reason));
-    }
-    ran.map_err(|error| match error {
-        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => PreviewError::NoDisplay {
-            reason: error.to_string(),
-        },
-        error => PreviewError::Window(error.to_string()),
-    })?;
+    let mut shell = Shell {
+        inner,
+        gpu: Arc::clone(&gpu),
+    };
+    events.run_app(&mut shell).map_err(no_display)?;
+    drop(shell);
+    let started = started.lock().unwrap_or_else(PoisonError::into_inner);
+    started.clone().map_err(PreviewError::Window)?;
     Ok(gpu.check()?)
 }
 

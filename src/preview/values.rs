@@ -11,8 +11,8 @@ pub(super) fn neat(number: f64, size: f64) -> f64 {
         let digits = (digits as usize).min(320);
         format!("{number:.digits$}")
     } else {
-        let unit = 10_f64.powi(-digits as i32);
-        format!("{:.0}", (number / unit).round() * unit)
+        let zeros = -digits as i32;
+        format!("{:.0}e{zeros}", number / 10_f64.powi(zeros))
     };
     // A zero without a sign.
     text.parse::<f64>().map_or(number, |number| number + 0.0)

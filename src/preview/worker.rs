@@ -15,6 +15,7 @@ use crate::frame::Stage;
 use crate::gpu::GpuError;
 use crate::gpu::canvas::{Canvas, Scatter};
 use crate::gpu::device::Gpu;
+use crate::gpu::pipeline::Compiled;
 use crate::render::{self, Backend, Live, Precision, Report, Settings, render_live};
 use crate::scene::Scene;
 
@@ -124,6 +125,7 @@ impl Worker {
             taker,
             progress: Arc::clone(&progress),
             ladder: Ladder::default(),
+            compiled: Compiled::default(),
             canvases: Vec::new(),
         };
         let thread = std::thread::Builder::new()
@@ -160,6 +162,7 @@ struct Work {
     taker: Taker<Wish>,
     progress: Arc<Progress>,
     ladder: Ladder,
+    compiled: Compiled,
     /// Canvases to be used again once nobody shows them.
     canvases: Vec<Arc<Canvas>>,
 }
@@ -272,6 +275,7 @@ impl Work {
         let live = Live {
             gpu: &self.gpu,
             canvas: Some(&canvas),
+            compiled: Some(&self.compiled),
             dispatch_seconds: DISPATCH,
             stop: &stop,
         };

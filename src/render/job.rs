@@ -56,10 +56,17 @@ impl Job<'_> {
             ));
             return self.on_cpu(emit, report);
         }
-        let features = FeatureSet::new(&packed, self.settings, gpu.lanes);
+        let mut features = FeatureSet::new(&packed, self.settings, gpu.lanes);
+        if live.compiled.is_some() && !certified {
+            features = features.while_moving();
+        }
         let wgsl = compose::compose(&packed, &features);
         let packing = start.elapsed().as_secs_f64();
-        let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl)?;
+        let compile = || match live.compiled {
+            Some(compiled) => compiled.get(gpu, &wgsl),
+            None => gpu.compile(&wgsl, "main"),
+        };
+        let pipeline = Pipeline::with(gpu, &packed, &features, compile)?;
         [report.seconds.instance, report.seconds.device] = gpu.seconds;
         report.seconds.compile = pipeline.seconds[0];
         report.seconds.upload = packing + pipeline.seconds[1];

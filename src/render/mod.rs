@@ -17,6 +17,7 @@ use crate::certify::{Stage, StageSeconds, Tally, trust};
 use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
+use crate::gpu::pipeline::Compiled;
 use crate::gpu::{self, GpuError};
 use crate::prepare::View;
 use crate::scene::Scene;
@@ -232,6 +233,9 @@ pub struct Live<'a> {
     pub gpu: &'a Gpu,
     /// Where the picture is shown, on the GPU: all pixels that the GPU makes are copied there.
     pub canvas: Option<&'a Canvas>,
+    /// Shaders that were compiled for pictures before: those of fast ones are made such that a picture from another viewpoint
+    /// finds its own there.
+    pub compiled: Option<&'a Compiled>,
     /// About how many seconds a dispatch is to take: whatever else wants the device has to wait for so long.
     pub dispatch_seconds: f64,
     /// Whether nobody wants the picture any more; asked every few thousand pixels.
@@ -244,6 +248,7 @@ impl<'a> Live<'a> {
         Self {
             gpu,
             canvas: None,
+            compiled: None,
             dispatch_seconds: DISPATCH_SECONDS,
             stop: &|| false,
         }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::super::GpuError;
 use super::super::compose::WORKGROUP;
 use super::super::device::Gpu;
-use super::super::pack::Job;
+use super::super::pack::{Job, MovingCamera};
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::partial;
@@ -46,9 +46,14 @@ impl Slot {
         let size = partial::Layout::new(pipeline, largest).bytes;
         let job = buffer(
             "job",
-            size_of::<Job>() as u64,
+            (size_of::<Job>() + size_of::<MovingCamera>()) as u64,
             wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         );
+        if let Some(camera) = &pipeline.camera {
+            let behind = size_of::<Job>() as u64;
+            gpu.queue
+                .write_buffer(&job, behind, bytemuck::bytes_of(camera));
+        }
         let pixels = buffer(
             "pixels",
             size,
@@ -167,7 +172,7 @@ impl Slot {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
             encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
         }
-        let index = gpu.queue.submit([encoder.finish()]);
+        let index = gpu.submit(encoder);
         self.staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
         if let Some(clock) = &self.clock {
             clock.staging.map_async(wgpu::MapMode::Read, .., |_| ());

@@ -186,7 +186,41 @@ pub struct Job {
     pub room: u32,
 }
 
-/// The camera's numbers, which go into the text of the shader.
+/// The camera in `Job`, where the shader reads it from there: behind what [`Job`] has.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct MovingCamera {
+    /// Pixel next to the viewpoint.
+    pub anchor: [i32; 2],
+    /// From one pixel to the next.
+    pub step: [f32; 2],
+    /// W.x and W.y at the anchor.
+    pub offset: [f32; 2],
+    /// −W.z.
+    pub distance: f32,
+    /// 255 / 2^scale.
+    pub gain: f32,
+    /// 1 / 2^scale.
+    pub unit: f32,
+    /// Nothing.
+    pub unused: u32,
+}
+
+impl From<&CameraText> for MovingCamera {
+    fn from(camera: &CameraText) -> Self {
+        Self {
+            anchor: camera.anchor,
+            step: camera.step,
+            offset: camera.offset,
+            distance: camera.distance,
+            gain: camera.gain,
+            unit: camera.unit,
+            unused: 0,
+        }
+    }
+}
+
+/// The camera's numbers, which go into the text of the shader as a rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraText {
     /// Pixel next to the viewpoint.

@@ -1,0 +1,75 @@
+//! The event loop: hands winit's events to eframe, and keeps the other threads' work from the device while the surface
+//! changes its size.
+
+use std::sync::Arc;
+
+use eframe::{EframeWinitApplication, UserEvent};
+use winit::application::ApplicationHandler;
+use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
+use winit::event_loop::ActiveEventLoop;
+use winit::window::WindowId;
+
+use crate::gpu::device::Gpu;
+
+/// eframe's window, with what it does not know: that others use its device.
+pub(super) struct Shell<'a> {
+    pub(super) inner: EframeWinitApplication<'a>,
+    pub(super) gpu: Arc<Gpu>,
+}
+
+impl Shell<'_> {
+    /// Lets the others go on: not only if an event told that the size changes, since a surface that turns out to be outdated
+    /// while it is drawn keeps them away too.
+    fn done(&self) {
+        self.gpu.turn.open();
+    }
+}
+
+impl ApplicationHandler<UserEvent> for Shell<'_> {
+    fn window_event(&mut self, active: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
+        let resizes = matches!(
+            event,
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. }
+        );
+        if resizes {
+            self.gpu.turn.close();
+        }
+        self.inner.window_event(active, window, event);
+        self.done();
+    }
+
+    fn resumed(&mut self, active: &ActiveEventLoop) {
+        self.inner.resumed(active);
+    }
+
+    fn suspended(&mut self, active: &ActiveEventLoop) {
+        self.inner.suspended(active);
+    }
+
+    fn new_events(&mut self, active: &ActiveEventLoop, cause: StartCause) {
+        self.inner.new_events(active, cause);
+        self.done();
+    }
+
+    fn user_event(&mut self, active: &ActiveEventLoop, event: UserEvent) {
+        self.inner.user_event(active, event);
+        self.done();
+    }
+
+    fn device_event(&mut self, active: &ActiveEventLoop, device: DeviceId, event: DeviceEvent) {
+        self.inner.device_event(active, device, event);
+    }
+
+    fn about_to_wait(&mut self, active: &ActiveEventLoop) {
+        self.inner.about_to_wait(active);
+        self.done();
+    }
+
+    fn exiting(&mut self, active: &ActiveEventLoop) {
+        self.inner.exiting(active);
+    }
+
+    fn memory_warning(&mut self, active: &ActiveEventLoop) {
+        self.inner.memory_warning(active);
+    }
+}
