@@ -242,6 +242,11 @@ fn materials() -> Vec<Material> {
 }
 
 fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
+    let (packed, features) = packed(chosen);
+    (compose(&packed, &features), features)
+}
+
+fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
     let texels = Texels {
         width: 2,
         height: 1,
@@ -286,7 +291,7 @@ fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
     };
     let packed = Packed::new(&scene, &settings);
     let features = FeatureSet::new(&packed, &settings, 8);
-    (compose(&packed, &features), features)
+    (packed, features)
 }
 
 fn validate(wgsl: &str) -> Result<naga::Module, String> {
@@ -389,7 +394,43 @@ fn every_scene_of_ours_is_valid() {
             let packed = Packed::new(&common::read(&path), &settings);
             let features = FeatureSet::new(&packed, &settings, 8);
             assert_valid(&compose(&packed, &features), &path.display().to_string());
+            if precision == Precision::Fast {
+                let moving = compose(&packed, &features.while_moving());
+                assert_valid(&moving, &format!("{} moving", path.display()));
+            }
         }
+    }
+}
+
+/// What lets a window show a scene from one viewpoint after the other without compiling.
+#[test]
+fn another_viewpoint_is_another_shader_only_where_the_camera_is_in_the_text() {
+    let settings = Settings {
+        precision: Precision::Fast,
+        ..Settings::default()
+    };
+    for name in [
+        "notes/walls.txt",
+        "gallery/spheres_over_tiles.txt",
+        "lit/mirror_and_glass.txt",
+    ] {
+        let mut scene = common::read(&common::scenes().join(name));
+        let texts = |scene: &Scene| {
+            let packed = Packed::new(scene, &settings);
+            let features = FeatureSet::new(&packed, &settings, 8);
+            [
+                compose(&packed, &features),
+                compose(&packed, &features.while_moving()),
+            ]
+        };
+        let [text, moving] = texts(&scene);
+        scene.camera.viewpoint += DVec3::new(0.01, -0.02, 0.005);
+        let [other, moved] = texts(&scene);
+        assert_ne!(text, other, "{name}");
+        assert_eq!(moving, moved, "{name}");
+        // Nor does a smaller picture ask for another one.
+        scene.camera.pixeldim = scene.camera.pixeldim.map(|pixels| pixels / 4);
+        assert_eq!(moving, texts(&scene)[1], "{name}");
     }
 }
 
@@ -729,6 +770,27 @@ mod layout {
             unused_1,
             unused_2
         );
+    }
+
+    #[test]
+    fn a_camera_that_moves_stands_behind_the_job() {
+        let (packed, features) = packed(&[Plane, Lamp, Fast]);
+        let wgsl = compose(&packed, &features.while_moving());
+        let (members, span) = wgsl_struct(&assert_valid(&wgsl, "moving"), "Job");
+        let job = size_of::<pack::Job>();
+        let behind = |offset: usize| job + offset;
+        let ours = [
+            ("camera_anchor", offset_of!(pack::MovingCamera, anchor)),
+            ("camera_step", offset_of!(pack::MovingCamera, step)),
+            ("camera_offset", offset_of!(pack::MovingCamera, offset)),
+            ("camera_distance", offset_of!(pack::MovingCamera, distance)),
+            ("camera_gain", offset_of!(pack::MovingCamera, gain)),
+            ("unit", offset_of!(pack::MovingCamera, unit)),
+            ("camera_unused", offset_of!(pack::MovingCamera, unused)),
+        ]
+        .map(|(name, offset)| (name.to_owned(), behind(offset)));
+        assert_eq!(members[4..], ours);
+        assert_eq!(span, job + size_of::<pack::MovingCamera>());
     }
 
     #[test]
