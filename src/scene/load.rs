@@ -44,6 +44,16 @@ pub enum LoadError {
 /// # Errors
 /// When the file cannot be read, is too large, or is not a scene without mistakes.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
+    let bytes = read_file(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok(parse(&path.to_string_lossy(), &bytes, folder)?)
+}
+
+/// The bytes of a file that is perhaps a scene.
+///
+/// # Errors
+/// When it cannot be read, or is too large.
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
     let fail = |source: io::Error| {
         // Some systems refuse to open a directory with a reason that misleads.
         let source = if path.is_dir() {
@@ -73,11 +83,9 @@ pub fn load(path: &Path) -> Result<Scene, LoadError> {
     if metadata.len() > MAX_FILE {
         return Err(too_large());
     }
-    let bytes = read(file, metadata.len())
+    read(file, metadata.len())
         .map_err(fail)?
-        .ok_or_else(too_large)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    Ok(parse(&path.to_string_lossy(), &bytes, folder)?)
+        .ok_or_else(too_large)
 }
 
 /// Loads a scene from a stream, which diagnostics call `name` (as `<stdin>`). Textures are relative to `folder`.
