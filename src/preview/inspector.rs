@@ -56,3 +56,66 @@ pub(super) fn show(
         });
     let_go
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    struct Shown {
+        panel: Panel,
+        over: Option<[u32; 2]>,
+        let_go: bool,
+    }
+
+    fn shown(panel: Panel, over: Option<[u32; 2]>) -> Harness<'static, Shown> {
+        let mut harness = Harness::new_ui_state(
+            |ui, shown: &mut Shown| {
+                let wanted = shown.panel.held.or(shown.over);
+                shown.let_go |= show(ui, &shown.panel, wanted, Some("the GPU, which is sure"));
+            },
+            Shown {
+                panel,
+                over,
+                let_go: false,
+            },
+        );
+        harness.run();
+        harness
+    }
+
+    // With all that `plumb probe` prints, some of which few fonts have.
+    const TEXT: &str = "weight ∘ (ambient + diffuse) · 1 ± 2 × 3 … 640×480 ≤ ≥ √ — − ÷ ²";
+
+    #[test]
+    fn a_pixel_is_explained_once_that_is_known() {
+        let explained = Some((1, [3, 4], TEXT.to_owned()));
+        let panel = Panel {
+            held: None,
+            explained,
+        };
+        let mut harness = shown(panel, Some([3, 4]));
+        harness.get_by_label("pixel (3, 4)");
+        harness.get_by_label("decided by the GPU, which is sure");
+        harness.get_by_label(TEXT);
+        // What was explained is of another pixel.
+        harness.state_mut().over = Some([5, 4]);
+        harness.run();
+        harness.get_by_label("pixel (5, 4)");
+        assert!(harness.query_by_label(TEXT).is_none());
+    }
+
+    #[test]
+    fn a_pixel_that_is_held_can_be_let_go() {
+        let panel = Panel {
+            held: Some([3, 4]),
+            explained: None,
+        };
+        let mut harness = shown(panel, Some([7, 7]));
+        harness.get_by_label("pixel (3, 4)");
+        harness.get_by_label("let go (Esc)").click();
+        harness.run();
+        assert!(harness.state().let_go);
+    }
+}

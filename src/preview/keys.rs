@@ -175,3 +175,87 @@ pub(super) fn pressed(context: &Context) -> Vec<Command> {
         commands
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui;
+    use egui_kittest::Harness;
+
+    fn listening() -> Harness<'static, Vec<Command>> {
+        Harness::new_ui_state(
+            |ui, commands: &mut Vec<Command>| commands.extend(pressed(ui.ctx())),
+            Vec::new(),
+        )
+    }
+
+    #[test]
+    fn every_key_asks_for_what_the_table_says() {
+        for binding in BINDINGS {
+            let mut harness = listening();
+            let modifiers = Modifiers {
+                shift: binding.with_shift == Some(true),
+                ctrl: binding.with_command,
+                command: binding.with_command,
+                ..Modifiers::NONE
+            };
+            harness.key_press_modifiers(modifiers, binding.key);
+            harness.run_steps(3);
+            assert_eq!(
+                *harness.state(),
+                [binding.command],
+                "{:?} {modifiers:?}",
+                binding.key
+            );
+        }
+    }
+
+    #[test]
+    fn with_other_modifiers_keys_ask_for_nothing() {
+        let mut harness = listening();
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::V);
+        harness.key_press_modifiers(Modifiers::ALT, Key::R);
+        harness.key_press(Key::S);
+        harness.run_steps(3);
+        assert!(harness.state().is_empty(), "{:?}", harness.state());
+    }
+
+    #[test]
+    fn a_field_of_text_has_the_keys_for_itself() {
+        let mut harness = Harness::new_ui_state(
+            |ui, (text, commands): &mut (String, Vec<Command>)| {
+                let label = ui.label("text");
+                let field = ui.text_edit_singleline(text).labelled_by(label.id);
+                field.request_focus();
+                commands.extend(pressed(ui.ctx()));
+            },
+            (String::new(), Vec::new()),
+        );
+        harness.run_steps(3);
+        harness.event(egui::Event::Text("v".into()));
+        harness.key_press(Key::V);
+        harness.run_steps(3);
+        assert_eq!(harness.state().0, "v");
+        assert!(harness.state().1.is_empty());
+    }
+
+    #[test]
+    fn the_help_names_every_key() {
+        let help: String = HELP.iter().map(|(what, _)| format!(" {what} ")).collect();
+        for binding in BINDINGS {
+            let name = match binding.key {
+                Key::ArrowLeft | Key::ArrowRight | Key::ArrowUp | Key::ArrowDown => "arrows",
+                Key::PageUp | Key::PageDown => continue,
+                // Others for the same.
+                Key::Equals | Key::Questionmark | Key::W => continue,
+                Key::Plus => "+",
+                Key::Minus => "−",
+                Key::Num0 => "0",
+                Key::Num1 => "1",
+                Key::Escape => continue,
+                key => key.name(),
+            };
+            assert!(help.contains(name), "{name}");
+        }
+    }
+}

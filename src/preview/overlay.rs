@@ -91,11 +91,11 @@ impl SaveAs {
             .resizable(false)
             .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
             .show(context, |ui| {
-                ui.label(
+                let label = ui.label(
                     "Its name ends in .png, .ppm or .exr (the values before they become bytes):",
                 );
                 let field = egui::TextEdit::singleline(&mut self.name).desired_width(420.0);
-                let field = ui.add(field);
+                let field = ui.add(field).labelled_by(label.id);
                 if std::mem::take(&mut self.fresh) {
                     field.request_focus();
                 }
@@ -113,5 +113,71 @@ impl SaveAs {
                 });
             });
         if open { chosen } else { Chosen::Cancel }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    #[test]
+    fn trouble_shows_what_is_wrong() {
+        for (trouble_of_file, words) in [
+            (
+                Trouble::Mistakes("error: 3:1\n  ^".into()),
+                "error: 3:1\n  ^",
+            ),
+            (Trouble::Gone, "It is shown again once it is back."),
+            (Trouble::Unreadable("no rights".into()), "no rights"),
+        ] {
+            for picture in [true, false] {
+                let shown = trouble_of_file.clone();
+                let mut harness = Harness::new_ui(move |ui| {
+                    trouble(ui, ui.max_rect(), &shown, picture);
+                });
+                harness.run_steps(3);
+                harness.get_by_label(words);
+                let last = harness.query_by_label_contains("last good picture");
+                assert_eq!(last.is_some(), picture);
+            }
+        }
+    }
+
+    fn asking(name: &str) -> Harness<'static, (SaveAs, Chosen)> {
+        let state = (SaveAs::new(name.into()), Chosen::Open);
+        let mut harness = Harness::new_ui_state(
+            |ui, (dialog, chosen): &mut (SaveAs, Chosen)| {
+                if *chosen == Chosen::Open {
+                    *chosen = dialog.show(ui.ctx());
+                }
+            },
+            state,
+        );
+        harness.run_steps(3);
+        harness
+    }
+
+    #[test]
+    fn the_name_of_a_picture_is_asked_for() {
+        let mut harness = asking("room.png");
+        assert_eq!(harness.state().1, Chosen::Open);
+        harness.event(egui::Event::Text("x".into()));
+        harness.run_steps(3);
+        harness.key_press(egui::Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(
+            (&*harness.state().0.name, &harness.state().1),
+            ("room.pngx", &Chosen::Save)
+        );
+        let mut harness = asking("room.png");
+        harness.get_by_label("Save").click();
+        harness.run_steps(3);
+        assert_eq!(harness.state().1, Chosen::Save);
+        let mut harness = asking("room.png");
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(3);
+        assert_eq!(harness.state().1, Chosen::Cancel);
     }
 }

@@ -281,7 +281,7 @@ fn value_of(numbers: &[f64]) -> Option<Value> {
 fn reset(ui: &mut Ui, session: &Session, target: Target, wanted: &mut Vec<Wanted>) {
     if session.changes().get(target).is_some()
         && ui
-            .small_button("⟲")
+            .small_button("reset")
             .on_hover_text("as the file has it")
             .clicked()
     {
@@ -338,3 +338,6 @@ fn list(
             }
         });
 }
+
+#[cfg(test)]
+mod tests;

@@ -95,8 +95,12 @@ pub(super) fn show(ui: &mut Ui, picture: Option<&Picture>, line: &Line) -> bool 
                 let figures = ui.label(figures(picture));
                 let remarks = remarks(picture);
                 if !remarks.is_empty() {
-                    ui.label(RichText::new("⚠").color(ui.visuals().warn_fg_color))
-                        .on_hover_text(remarks.join("\n"));
+                    ui.label(
+                        RichText::new("!")
+                            .strong()
+                            .color(ui.visuals().warn_fg_color),
+                    )
+                    .on_hover_text(remarks.join("\n"));
                     figures.on_hover_text(remarks.join("\n"));
                 }
             }
