@@ -50,17 +50,19 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         bail!("a window follows a file, and stdin is none: save the scene, and name its file");
     }
     // What cannot be read now is told here, where it is asked for; mistakes in it are shown in the window.
-    match plumb::scene::load(&args.scene) {
+    let room = match plumb::scene::load(&args.scene) {
         Ok(mut scene) => {
             args.picture.apply(&mut scene);
             args.picture.check(&scene)?;
+            scene.camera.pixeldim
         }
-        Err(plumb::scene::LoadError::Scene(_)) => {}
+        Err(plumb::scene::LoadError::Scene(_)) => args.picture.size.unwrap_or([640, 480]),
         Err(error) => return Err(error.into()),
-    }
+    };
     run(Options {
         path: args.scene.clone(),
         size: args.picture.size,
+        room,
         settings: Settings {
             adapter: args.adapter.clone(),
             cache: cache::folder(),

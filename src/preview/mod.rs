@@ -47,6 +47,8 @@ pub struct Options {
     pub path: PathBuf,
     /// Columns and rows of the picture, in place of the file's.
     pub size: Option<[u32; 2]>,
+    /// Columns and rows that the window has room for at first.
+    pub room: [u32; 2],
     /// How it is rendered; precision, backend, rows, values and verdicts are the window's own affair.
     pub settings: Settings,
     /// What saved pictures name as the software that made them.
@@ -158,11 +160,7 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
 
 /// Room for the picture as it is, the panels beside it and below, within reason.
 fn window_size(options: &Options) -> [f32; 2] {
-    let size = options.size.or_else(|| {
-        let scene = crate::scene::load(&options.path).ok()?;
-        Some(scene.camera.pixeldim)
-    });
-    let [width, height] = size.unwrap_or([640, 480]).map(|pixels| pixels as f32);
+    let [width, height] = options.room.map(|pixels| pixels as f32);
     [
         (width + side::WIDTH + 24.0).clamp(800.0, 1500.0),
         (height + inspector::HEIGHT + 56.0).clamp(600.0, 950.0),

@@ -291,7 +291,8 @@ fn reset(ui: &mut Ui, session: &Session, target: Target, wanted: &mut Vec<Wanted
 
 /// The lists of objects, materials and lights.
 fn lists(ui: &mut Ui, side: &mut Side, scene: &Scene) {
-    let kinds: [(&str, usize, fn(usize) -> EntityId); 3] = [
+    type Made = fn(usize) -> EntityId;
+    let kinds: [(&str, usize, Made); 3] = [
         ("Objects", scene.objects.len(), EntityId::Object),
         ("Materials", scene.materials.len(), EntityId::Material),
         ("Lights", scene.lights.len(), EntityId::Light),
