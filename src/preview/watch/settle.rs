@@ -10,13 +10,13 @@ use sha2::{Digest, Sha256};
 use super::News;
 
 /// How long a text has to stay as it is.
-pub(super) const QUIET: Duration = Duration::from_millis(6);
+const QUIET: Duration = Duration::from_millis(6);
 
 /// How long a file has to stay empty, missing or unreadable.
-pub(super) const ABSENT: Duration = Duration::from_millis(300);
+const ABSENT: Duration = Duration::from_millis(300);
 
 /// How long a text may keep changing before it is told nonetheless.
-pub(super) const LONGEST: Duration = Duration::from_millis(200);
+const LONGEST: Duration = Duration::from_millis(200);
 
 /// What was told and what is not settled yet; nothing of the text itself. Times are since any one moment.
 #[derive(Debug, Default)]
