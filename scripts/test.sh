@@ -4,12 +4,16 @@
 # Many tests run on a GPU, and fail without one; a software Vulkan driver will do. Where there is none, and this script
 # may (as root on Debian or Ubuntu), it installs one; elsewhere it says what to install.
 #
+# The window of `plumb preview` is tested on Xvfb, an X server without a screen (Linux only). The same goes for that.
+#
 # tests/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian package (32 MB,
 # nothing is installed) and kept beside what is built. PLUMB_SECOND_DRIVER names the JSON file of another one.
 set -eu
 cd "$(dirname "$0")/.."
 
 packages="mesa-vulkan-drivers libvulkan1"
+# The server, and those of the libraries that a window loads when it opens that need not come with them.
+window_packages="xvfb libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0"
 
 say() { printf 'test.sh: %s\n' "$*"; }
 stop() {
@@ -30,9 +34,11 @@ if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     export XDG_RUNTIME_DIR
 fi
 
+libraries() { (PATH=$PATH:/usr/sbin:/sbin && ldconfig -p 2>/dev/null); }
+
 # Whether there is a file where the Vulkan loader looks for drivers, and the loader itself.
 vulkan_seems_installed() {
-    (PATH=$PATH:/usr/sbin:/sbin && ldconfig -p 2>/dev/null) | grep -q 'libvulkan\.so\.1' || return 1
+    libraries | grep -q 'libvulkan\.so\.1' || return 1
     [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
     for file in /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json; do
         [ ! -e "$file" ] || return 0
@@ -40,30 +46,47 @@ vulkan_seems_installed() {
     return 1
 }
 
+windows_seem_possible() {
+    command -v Xvfb >/dev/null || return 1
+    for library in libX11.so.6 libX11-xcb.so.1 libXcursor.so.1 libXi.so.6 libxkbcommon-x11.so.0; do
+        libraries | grep -qF "$library " || return 1
+    done
+}
+
 may_install() { [ "$(uname)" = Linux ] && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; }
 
-installed=no
+# What is missing, then the packages that have it.
 install() {
-    installed=yes
-    say "no Vulkan driver found: apt-get installs $packages"
+    say "$1: apt-get installs $2"
     # A package list that cannot be fetched need not matter: the installation tells.
     # shellcheck disable=SC2086
-    { apt-get update || :; DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $packages; } \
+    { apt-get update || :; DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $2; } \
         </dev/null >"$scratch/apt-get" 2>&1 || {
         cat "$scratch/apt-get" >&2
-        stop "apt-get could not install $packages"
+        stop "apt-get could not install $2"
     }
+}
+installed=no
+install_vulkan() {
+    installed=yes
+    install "no Vulkan driver found" "$packages"
 }
 
 command -v cargo >/dev/null || stop "there is no cargo: install Rust, see https://rustup.rs"
 if may_install && ! vulkan_seems_installed; then
-    install
+    install_vulkan
+fi
+if may_install && ! windows_seem_possible; then
+    install "no Xvfb found, or not all libraries that a window loads" "$window_packages"
+fi
+if [ "$(uname)" = Linux ] && ! command -v Xvfb >/dev/null; then
+    stop "there is no Xvfb, on which the window is tested (Debian, Ubuntu: apt-get install $window_packages; Fedora: dnf install xorg-x11-server-Xvfb libX11-xcb libXcursor libXi libxkbcommon-x11; Arch: pacman -S xorg-server-xvfb libxcursor libxi libxkbcommon-x11)"
 fi
 
 # Several minutes the first time: someone who looks on sees what is compiled.
 say "building"
 if [ -t 2 ]; then quiet=; else quiet=--quiet; fi
-cargo test --release --locked --no-run $quiet
+cargo test --release --locked --features preview --no-run $quiet
 
 # What plumb itself finds is what counts.
 target=$(cargo metadata --locked --no-deps --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')
@@ -78,7 +101,7 @@ look() {
 }
 look
 if [ "$found" = "the CPU" ] && [ "$installed" = no ] && may_install; then
-    install
+    install_vulkan
     look
 fi
 if [ "$found" = "the CPU" ]; then
@@ -115,4 +138,4 @@ if [ -z "${PLUMB_SECOND_DRIVER:-}" ] && [ "$(uname)" = Linux ]; then
 fi
 
 say "testing on $found"
-cargo test --release --locked --no-fail-fast --quiet "$@"
+cargo test --release --locked --features preview --no-fail-fast --quiet "$@"

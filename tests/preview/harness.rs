@@ -9,7 +9,7 @@ use x11rb::connection::Connection;
 use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
     AtomEnum, ChangeGCAux, ConnectionExt as _, CreateGCAux, CreateWindowAux, EventMask, PropMode,
-    Rectangle, WindowClass,
+    Rectangle, SELECTION_NOTIFY_EVENT, SelectionNotifyEvent, WindowClass,
 };
 use x11rb::wrapper::ConnectionExt as _;
 
@@ -21,6 +21,9 @@ const MARK: Rgb<u8> = Rgb([251, 64, 3]);
 /// Left, top, width, height of the mark.
 const MARKED: [u32; 4] = [20, 10, 30, 15];
 const SIZE: (u32, u32) = (200, 120);
+
+/// What the client copies.
+const COPIED: &str = "two lines\nand an é";
 
 /// Set where this program is the one that is tested.
 const CLIENT: &str = "PLUMB_TEST_CLIENT";
@@ -132,11 +135,38 @@ fn the_client() {
                 let shift = usize::from(u16::from(event.state) & 1);
                 let keysym = map.keysyms[place * usize::from(map.keysyms_per_keycode) + shift];
                 match char::from_u32(keysym) {
+                    Some('c') => {
+                        let time = event.time;
+                        connection
+                            .set_selection_owner(window, atom("CLIPBOARD"), time)
+                            .unwrap();
+                        String::from("copied")
+                    }
                     Some('q') => std::process::exit(7),
                     Some('z') => panic!("told to"),
                     Some(c @ ' '..='~') => format!("{c}/{}", u16::from(event.state)),
                     _ => format!("{keysym:x}/{}", u16::from(event.state)),
                 }
+            }
+            Event::SelectionRequest(asked) => {
+                let bytes = COPIED.as_bytes();
+                let (to, at, kind) = (asked.requestor, asked.property, asked.target);
+                connection
+                    .change_property8(PropMode::REPLACE, to, at, kind, bytes)
+                    .unwrap();
+                let event = SelectionNotifyEvent {
+                    response_type: SELECTION_NOTIFY_EVENT,
+                    sequence: 0,
+                    time: asked.time,
+                    requestor: to,
+                    selection: asked.selection,
+                    target: kind,
+                    property: at,
+                };
+                connection
+                    .send_event(false, to, EventMask::NO_EVENT, event)
+                    .unwrap();
+                continue;
             }
             Event::ButtonPress(e) => format!("+{}@{},{}", e.detail, e.event_x, e.event_y),
             Event::ButtonRelease(e) => format!("-{}@{},{}", e.detail, e.event_x, e.event_y),
@@ -234,6 +264,19 @@ fn keys_and_mouse_arrive() {
 }
 
 #[test]
+fn what_is_copied_can_be_read() {
+    let display = Display::start(640, 480);
+    assert_eq!(display.clipboard(), None);
+    let mut client = Program::start(&display, client());
+    client.window.focus();
+    client.window.key('c'.into(), &[]);
+    client.wait("its word", |window| {
+        window.title().ends_with("copied").then_some(())
+    });
+    assert_eq!(display.clipboard().as_deref(), Some(COPIED));
+}
+
+#[test]
 fn an_end_is_noticed() {
     let display = Display::start(640, 480);
     // By itself, with a code.
@@ -264,7 +307,7 @@ fn an_end_is_noticed() {
 fn without_a_server_it_says_what_to_install() {
     let why = complaint(|| drop(Display::start_with("no-such-Xvfb", 64, 64)));
     assert!(why.contains("package xvfb"), "{why}");
-    // A screen that there cannot be.
-    let why = complaint(|| drop(Display::start(0, 0)));
+    // One that ends at once.
+    let why = complaint(|| drop(Display::start_with("false", 64, 64)));
     assert!(why.contains("Xvfb does not start: "), "{why}");
 }

@@ -315,7 +315,8 @@ impl Window<'_> {
         self.release(button);
     }
 
-    /// Turns the wheel: away from the user if positive.
+    /// Turns the wheel: away from the user if positive. winit tells of each of these steps twice, as a button and as a
+    /// scroll axis, which it does not for a wheel of a real mouse.
     pub(crate) fn wheel(&self, steps: i32) {
         let button = if steps > 0 { WHEEL_UP } else { WHEEL_DOWN };
         for _ in 0..steps.abs() {
