@@ -505,8 +505,12 @@ impl App {
             "*"
         };
         let mut title = format!("{}{star} – plumb", self.session.name());
-        if self.session.trouble.is_some() {
-            title.push_str(" – mistake");
+        if let Some(trouble) = &self.session.trouble {
+            title.push_str(match trouble {
+                session::Trouble::Mistakes(_) => " – mistake",
+                session::Trouble::Gone => " – gone",
+                session::Trouble::Unreadable(_) => " – cannot be read",
+            });
         } else if !kind.is_empty() {
             title.push_str(&format!(" – {kind}"));
         }

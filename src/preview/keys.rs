@@ -1,6 +1,6 @@
 //! What the keys and the mouse do: one table for the window and for the help that F1 shows.
 
-use eframe::egui::{Context, Key, Modifiers};
+use eframe::egui::{Context, Event, Key, Modifiers};
 
 /// What a key asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,28 +152,33 @@ pub(super) fn pressed(context: &Context) -> Vec<Command> {
         return Vec::new();
     }
     context.input(|input| {
-        let Modifiers {
-            shift,
-            command,
-            alt,
-            ..
-        } = input.modifiers;
-        let mut commands = Vec::new();
-        for binding in BINDINGS {
-            let matches = binding.with_command == command
-                && !alt
-                && binding.with_shift.is_none_or(|wanted| wanted == shift);
-            if matches && input.key_pressed(binding.key) {
-                commands.push(binding.command);
-            }
-        }
-        // egui makes an event of its own of Ctrl+C.
-        let copies = |event: &eframe::egui::Event| matches!(event, eframe::egui::Event::Copy);
-        if input.events.iter().any(copies) {
-            commands.push(Command::CopyCamera);
-        }
-        commands
+        let asked = |event: &Event| match event {
+            // Each with the modifiers of its moment: between two frames there may be several.
+            Event::Key {
+                key,
+                pressed: true,
+                modifiers,
+                ..
+            } => command(*key, *modifiers),
+            // egui makes an event of its own of Ctrl+C.
+            Event::Copy => Some(Command::CopyCamera),
+            _ => None,
+        };
+        input.events.iter().filter_map(asked).collect()
     })
+}
+
+/// What a key asks for with these modifiers.
+fn command(key: Key, modifiers: Modifiers) -> Option<Command> {
+    let asks = |binding: &&Binding| {
+        binding.key == key
+            && binding.with_command == modifiers.command
+            && !modifiers.alt
+            && binding
+                .with_shift
+                .is_none_or(|wanted| wanted == modifiers.shift)
+    };
+    BINDINGS.iter().find(asks).map(|binding| binding.command)
 }
 
 #[cfg(test)]
@@ -208,6 +213,23 @@ mod tests {
                 binding.key
             );
         }
+    }
+
+    /// On a slow machine much happens between two frames.
+    #[test]
+    fn keys_that_were_struck_between_two_frames_all_count() {
+        let mut harness = listening();
+        for _ in 0..3 {
+            harness.key_press(Key::V);
+        }
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::S);
+        harness.event(egui::Event::PointerGone);
+        harness.run_steps(8);
+        let verdicts = Command::Verdicts;
+        assert_eq!(
+            *harness.state(),
+            [verdicts, verdicts, verdicts, Command::SaveChanges]
+        );
     }
 
     #[test]

@@ -32,6 +32,8 @@ pub(super) struct Showing {
     pub(super) look: Look,
     /// Whether what decided each pixel is painted over it.
     pub(super) verdicts: bool,
+    /// How far the drag that goes on has come.
+    dragged: egui::Vec2,
     /// What is outlined.
     pub(super) outlined: Option<Outlined>,
 }
@@ -51,8 +53,15 @@ pub(super) fn show(
     let in_pixels = |at: Pos2| [f64::from(at.x) * scale, f64::from(at.y) * scale];
     let over = response.hover_pos().map(in_pixels);
     let mut mouse = Mouse::default();
-    let delta = response.drag_delta();
-    if delta != egui::Vec2::ZERO {
+    // From where the button went down: a drag counts as one only after a few pixels, which must not be lost.
+    let total = response.total_drag_delta().unwrap_or_default();
+    let delta = total - showing.dragged;
+    showing.dragged = if response.dragged() {
+        total
+    } else {
+        egui::Vec2::ZERO
+    };
+    if delta != egui::Vec2::ZERO && (response.dragged() || response.drag_stopped()) {
         let by = [f64::from(delta.x) * scale, f64::from(delta.y) * scale];
         if response.dragged_by(PointerButton::Primary) {
             let zoom = showing.look.place(area, size).zoom;

@@ -9,6 +9,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod clipboard;
+#[path = "../common/mod.rs"]
+mod common;
+mod follows;
+mod hands;
 mod harness;
 mod program;
+mod window;
 mod x11;

@@ -1,0 +1,260 @@
+//! What the hands do: keys, mouse, and what becomes of the file.
+
+use image::Rgb;
+use plumb::certify::Stage;
+use plumb::certify::verdict::color;
+use plumb::render::{Backend, Settings, render};
+
+use crate::window::{File, ROOM, SIZE, close, command, open, picture, small, wait_for_picture};
+use crate::x11::{Display, LEFT, keys};
+
+#[test]
+fn the_viewpoint_is_moved_and_written_into_the_file() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    let (x, y) = wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
+    let (x, y) = (x as i32, y as i32);
+    // 40 pixels are a unit of the world.
+    program.window.move_to(x + 100, y + 100);
+    program.window.press(LEFT);
+    for step in 1..=10 {
+        program
+            .window
+            .move_to(x + 100 + 4 * step, y + 100 + 2 * step);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let moved =
+        |viewpoint: &str| ROOM.replace("viewpoint 4 3 6", &format!("viewpoint {viewpoint}"));
+    let dragged = moved("5 2.5 6");
+    wait_for_picture(&mut program, "the drag", &file.picture(&dragged));
+    program.window.release(LEFT);
+    // The file is as it was until it is saved.
+    assert_eq!(file.read(), ROOM);
+    program.window.key('s'.into(), &[keys::CONTROL]);
+    program.wait("the saved viewpoint", |_| {
+        (file.read() == dragged).then_some(())
+    });
+    // An arrow is a fortieth of the screen's width.
+    program.window.key(keys::RIGHT, &[]);
+    program.window.key(keys::UP, &[]);
+    program.window.key(keys::UP, &[keys::SHIFT]);
+    let stepped = moved("5.2 2.72 6");
+    wait_for_picture(&mut program, "steps", &file.picture(&stepped));
+    // Back to the file's.
+    program.window.key('r'.into(), &[]);
+    wait_for_picture(&mut program, "the reset", &file.picture(&dragged));
+    assert_eq!(file.read(), dragged);
+    // The wheel moves it away from the screen and back; how far a step goes, the file tells.
+    program.window.move_to(x + 100, y + 100);
+    program.window.wheel(-1);
+    program.wait("the wheel", |window| {
+        window.title().contains('*').then_some(())
+    });
+    program.window.key('s'.into(), &[keys::CONTROL]);
+    let text = program.wait("the saved distance", |_| {
+        Some(file.read()).filter(|text| *text != dragged)
+    });
+    let z = text.split("viewpoint 5 2.5 ").nth(1).unwrap();
+    let z: f64 = z.split_whitespace().next().unwrap().parse().unwrap();
+    assert!(z > 6.2, "{z}");
+    wait_for_picture(&mut program, "the wheel's picture", &file.picture(&text));
+    close(program);
+}
+
+#[test]
+fn the_camera_is_copied_as_a_block() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
+    program.window.key(keys::RIGHT, &[]);
+    let text = ROOM.replace("viewpoint 4 3 6", "viewpoint 4.2 3 6");
+    wait_for_picture(&mut program, "the step", &file.picture(&text));
+    program.window.key('c'.into(), &[]);
+    let block = program.wait("the clipboard", |_| display.clipboard());
+    // In place of the file's camera it makes the same picture.
+    let camera = ROOM
+        .lines()
+        .find(|line| line.starts_with("camera"))
+        .unwrap();
+    let pasted = ROOM.replace(camera, &block);
+    assert_eq!(file.picture(&pasted), file.picture(&text), "{block}");
+    close(program);
+}
+
+#[test]
+fn pixels_are_enlarged_up_to_64_times() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    let good = file.picture(ROOM);
+    let (x, y) = wait_for_picture(&mut program, "the first picture", &good);
+    // A pixel of the ball's edge, and its neighbour.
+    let (column, row) = (160, 120);
+    let at = (x as i32 + column as i32, y as i32 + row as i32);
+    program.window.move_to(at.0, at.1);
+    for _ in 0..20 {
+        program.window.key('+'.into(), &[]);
+    }
+    // What was under the cursor stays there, 64 times as large: its left edge is at the cursor.
+    let wanted = |c: u32, r: u32| *good.get_pixel(c, r);
+    program.wait_for("pixels as large as 64", |shot| {
+        let cell = |dx: i32, dy: i32| {
+            // Next to the corner of the cell, away from the numbers.
+            let at = (at.0 + 64 * dx + 3, at.1 + 64 * dy + 3);
+            *shot.get_pixel(at.0 as u32, at.1 as u32)
+        };
+        (-2..=2).all(|dx| {
+            (-2..=2).all(|dy| {
+                let (c, r) = (column as i32 + dx, row as i32 + dy);
+                cell(dx, dy) == wanted(c as u32, r as u32)
+            })
+        })
+    });
+    program.window.key('f'.into(), &[]);
+    wait_for_picture(&mut program, "the whole picture again", &good);
+    close(program);
+}
+
+#[test]
+fn what_decided_each_pixel_is_painted_over_the_picture() {
+    let display = Display::start(1400, 900);
+    // A scene with borders on pixels, which take exact arithmetic.
+    let (path, scene) = small("hard/tied_lines.txt");
+    let settings = Settings {
+        verdicts: true,
+        backend: Backend::Gpu,
+        ..Settings::default()
+    };
+    let mut stages = Vec::new();
+    render(&scene, &settings, &mut |band| {
+        stages.extend(band.verdicts.clone().unwrap());
+        Ok(())
+    })
+    .unwrap();
+    assert!(stages.contains(&Stage::Exact), "nothing to be painted");
+    let size = format!("{}x{}", SIZE[0], SIZE[1]);
+    let mut program = open(&display, &path, &["--size", &size]);
+    let good = picture(&scene);
+    let (x, y) = wait_for_picture(&mut program, "the picture", &good);
+    program.window.key('v'.into(), &[]);
+    program.wait_for("the verdicts", |shot| {
+        let mut pixels = stages.iter().enumerate();
+        pixels.all(|(i, stage)| {
+            let (c, r) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+            let found = shot.get_pixel(x + c, y + r);
+            if *stage != Stage::Gpu {
+                return *found == Rgb(color(*stage));
+            }
+            // Sure pixels step back.
+            let dim = |channel: usize| {
+                let byte = f64::from(good.get_pixel(c, r).0[channel]);
+                0.3 * byte + 0.3 * f64::from(color(*stage)[channel])
+            };
+            (0..3).all(|i| (dim(i) - f64::from(found.0[i])).abs() <= 1.0)
+        })
+    });
+    program.window.key('v'.into(), &[]);
+    wait_for_picture(&mut program, "the picture again", &good);
+    close(program);
+}
+
+#[test]
+fn the_picture_is_saved_as_render_writes_it() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
+    for name in ["saved.png", "saved.exr"] {
+        let to = file.beside(name);
+        program.window.key('p'.into(), &[]);
+        // In place of the name that is proposed.
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        program.window.key('a'.into(), &[keys::CONTROL]);
+        program.window.type_text(&format!("{}\n", to.display()));
+        let other = file.beside(&format!("rendered-{name}"));
+        let rendered = std::process::Command::new(env!("CARGO_BIN_EXE_plumb"))
+            .args(["render", "--quiet"])
+            .arg(&file.path)
+            .arg("-o")
+            .arg(&other)
+            .status()
+            .unwrap();
+        assert!(rendered.success());
+        program.wait(name, |_| to.exists().then_some(()));
+        assert!(
+            std::fs::read(&to).unwrap() == std::fs::read(&other).unwrap(),
+            "{name} is another file than `plumb render` writes"
+        );
+    }
+    close(program);
+}
+
+/// A scene that takes the GPU of a CPU a while.
+#[test]
+fn a_storm_of_sizes_is_survived_while_a_slow_scene_renders() {
+    let display = Display::start(1400, 900);
+    let (path, mut scene) = small("lit/mirror_and_glass.txt");
+    scene.camera.pixeldim = [400, 300];
+    let options = ["--size", "400x300", "--samples", "64"];
+    let mut program = open(&display, &path, &options);
+    for i in 0..60_u32 {
+        let part = |most: u32, by: u32| 500 + (i * by) % (most - 500);
+        program.window.resize(part(1400, 97), part(900, 61));
+        if i % 7 == 0 {
+            // Something else to be rendered, too.
+            program.window.key(keys::LEFT, &[]);
+            program.window.key(keys::RIGHT, &[]);
+        }
+        std::thread::sleep(std::time::Duration::from_millis(15));
+    }
+    program.window.resize(1000, 800);
+    let mut rgb = Vec::new();
+    let settings = Settings {
+        samples: 64,
+        ..Settings::default()
+    };
+    render(&scene, &settings, &mut |band| {
+        rgb.extend_from_slice(&band.rgb);
+        Ok(())
+    })
+    .unwrap();
+    let right = image::RgbImage::from_raw(400, 300, rgb).unwrap();
+    wait_for_picture(&mut program, "the picture after the storm", &right);
+    assert_eq!(program.window.size(), (1000, 800));
+    close(program);
+}
+
+#[test]
+fn the_window_ends_by_its_key_too() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
+    program.window.key('q'.into(), &[keys::CONTROL]);
+    let ended = program.end();
+    assert_eq!((&*ended.said, ended.status.code()), ("", Some(0)));
+}
+
+#[test]
+fn without_a_display_or_a_gpu_it_says_what_else_there_is() {
+    let file = File::new(ROOM);
+    let said = |change: &dyn Fn(&mut std::process::Command)| {
+        let mut command = command(&file.path, &[]);
+        command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        command.env_remove("WAYLAND_SOCKET");
+        change(&mut command);
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(output.stdout.is_empty());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let alone = said(&|_| ());
+    assert!(alone.contains("plumb render SCENE"), "{alone}");
+    let blind = said(&|command| {
+        command.env("VK_DRIVER_FILES", "/dev/null");
+        command.env("VK_ICD_FILENAMES", "/dev/null");
+    });
+    assert!(blind.contains("mesa-vulkan-drivers"), "{blind}");
+}
