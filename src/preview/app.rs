@@ -1,43 +1,42 @@
 //! The window: brings together the file, the pictures, the panels, and what the user does.
+//!
+//! Here are its parts, and a frame; `doing` has what keys, mouse and panels ask for, `asking` what is wanted to be known of
+//! the picture.
 
-use std::path::Path;
+mod asking;
+mod doing;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Rect, Ui};
-use eframe::egui_wgpu::wgpu;
-use glam::DVec3;
-use wgpu::util::DeviceExt as _;
 
-use super::inspect::{Answer, Inspector, Question};
+use super::desk::Desk;
+use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
-use super::keys::{self, Command};
-use super::look::{self, Area, Look};
+use super::keys;
 use super::overlay::{self, Chosen, SaveAs};
-use super::picture::{self, Mouse, Showing};
-use super::save;
-use super::screen::{self, Outlined, Seen};
+use super::picture::{self, Showing};
+use super::screen::{self, Seen};
 use super::session::{self, Session};
-use super::side::{self, Side, Wanted};
+use super::side::{self, Side};
 use super::status::{self, Line};
 use super::watch::Watcher;
-use super::worker::{self, Picture, Wish, Worker};
+use super::worker::{self, Picture, Worker};
 use super::{Options, inspector};
-use crate::certify::verdict::meaning;
-use crate::edit::{Target, Value, camera_block};
 use crate::gpu::canvas::Scatter;
 use crate::gpu::device::Gpu;
-use crate::scene::{EntityId, Scene};
-use crate::settings::Precision;
+use crate::scene::EntityId;
 
 /// What is said stays in the status line for so long.
 const SAID: Duration = Duration::from_secs(12);
 
 /// What other threads tell the window.
 enum Event {
-    File(session::News),
+    /// Something is to be said, or to be shown of the file.
+    File,
     Rendered(worker::News),
     Inspected(Answer),
     Saved(Result<String, String>),
@@ -63,7 +62,7 @@ impl Teller {
 pub(super) struct App {
     gpu: Arc<Gpu>,
     options: Options,
-    session: Session,
+    desk: Desk,
     events: Receiver<Event>,
     teller: Teller,
     worker: Worker,
@@ -74,8 +73,6 @@ pub(super) struct App {
     picture: Option<Picture>,
     /// Why the newest wish could not be fulfilled.
     failed: Option<String>,
-    /// The number of the newest wish.
-    wished: u64,
     showing: Showing,
     side: Side,
     side_open: bool,
@@ -126,12 +123,18 @@ impl App {
                 tell.tell(Event::Inspected(answer))
             })?;
         let tell = teller.clone();
+        let session = Session::new(options.path.clone(), options.size);
+        let desk = Desk::new(session, Arc::clone(&worker.wishes));
+        let file = desk.clone();
         let path = options.path.clone();
         let watcher = Watcher::new(&options.path, move |news| {
-            tell.tell(Event::File(session::News::read(&path, news)));
+            // What is rendered now wakes the window when it is there.
+            if !file.news(session::News::read(&path, news)) {
+                tell.tell(Event::File);
+            }
         })?;
         Ok(Self {
-            session: Session::new(options.path.clone(), options.size),
+            desk,
             gpu,
             options,
             events,
@@ -141,7 +144,6 @@ impl App {
             _watcher: watcher,
             picture: None,
             failed: None,
-            wished: 0,
             showing: Showing::default(),
             side: Side::default(),
             side_open: true,
@@ -165,26 +167,11 @@ impl App {
         self.said = Some((text.into(), Instant::now()));
     }
 
-    /// Has what is wanted now rendered.
-    fn wish(&mut self) {
-        if let Some((scene, changes)) = self.session.wanted() {
-            self.wished = self.worker.wish(Wish {
-                scene: Arc::clone(scene),
-                changes: changes.clone(),
-                since: Instant::now(),
-            });
-        }
-    }
-
     /// Takes what other threads tell.
     fn listen(&mut self) {
         while let Ok(event) = self.events.try_recv() {
             match event {
-                Event::File(news) => {
-                    if self.session.news(news) {
-                        self.wish();
-                    }
-                }
+                Event::File => {}
                 Event::Rendered(worker::News::Picture(picture)) => {
                     self.failed = None;
                     self.came.push(Instant::now());
@@ -197,7 +184,7 @@ impl App {
                     self.picture = Some(*picture);
                 }
                 Event::Rendered(worker::News::Failed { number, why }) => {
-                    if number == self.wished {
+                    if number == self.desk.lock().wished {
                         self.failed = Some(why);
                     }
                 }
@@ -205,285 +192,8 @@ impl App {
                 Event::Saved(Ok(text) | Err(text)) => self.say(text),
             }
         }
-        for text in std::mem::take(&mut self.session.said) {
-            self.say(text);
-        }
-    }
-
-    fn answered(&mut self, answer: Answer) {
-        match answer {
-            Answer::Pixel {
-                number,
-                pixel,
-                text,
-            } => self.panel.explained = Some((number, pixel, text)),
-            Answer::Objects {
-                number,
-                size,
-                objects,
-            } => {
-                let buffer =
-                    self.gpu
-                        .device
-                        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                            label: Some("objects seen"),
-                            contents: bytemuck::cast_slice(&objects),
-                            usage: wgpu::BufferUsages::STORAGE,
-                        });
-                let seen = Seen {
-                    size,
-                    objects: buffer,
-                };
-                self.seen = Some((number, Arc::new(seen)));
-                self.outlined = None;
-            }
-        }
-    }
-
-    /// The viewpoint as it is shown, and the scene as the file has it.
-    fn viewpoint(&self) -> Option<(DVec3, Arc<Scene>)> {
-        let scene = Arc::clone(self.session.wanted()?.0);
-        match self.session.value(Target::Viewpoint)? {
-            Value::Vector(viewpoint) => Some((viewpoint, scene)),
-            Value::Number(_) => None,
-        }
-    }
-
-    fn move_viewpoint(&mut self, to: impl FnOnce(DVec3, &Scene) -> DVec3) {
-        if let Some((viewpoint, scene)) = self.viewpoint() {
-            self.set(Target::Viewpoint, to(viewpoint, &scene).into());
-        }
-    }
-
-    fn set(&mut self, target: Target, value: Value) {
-        if self.session.set(target, value) {
-            self.wish();
-        }
-    }
-
-    fn obey(&mut self, context: &Context, command: Command) {
-        match command {
-            Command::Step(steps) => self
-                .move_viewpoint(|viewpoint, scene| look::stepped(&scene.camera, viewpoint, steps)),
-            Command::Away(steps) => self.move_viewpoint(|viewpoint, scene| {
-                look::moved_away(&scene.camera, viewpoint, steps)
-            }),
-            Command::Reset => {
-                if self.session.discard(Some(Target::Viewpoint)) {
-                    self.wish();
-                }
-            }
-            Command::Fit => self.showing.look = Look::Fit,
-            Command::OneToOne => self.zoom(context, |look, at, area, size| {
-                look.zoom_to(1.0, at, area, size);
-            }),
-            Command::Zoom(larger) => self.zoom(context, |look, at, area, size| {
-                look.step(larger, at, area, size);
-            }),
-            Command::Verdicts => self.showing.verdicts ^= true,
-            Command::Inspector => self.panel_open ^= true,
-            Command::Side => self.side_open ^= true,
-            Command::Escape => {
-                self.panel.held = None;
-                self.help_open = false;
-                self.side.selected = None;
-            }
-            Command::CopyCamera => self.copy_camera(context),
-            Command::SaveChanges => self.save_changes(),
-            Command::SavePicture => self.ask_where(),
-            Command::Reload => self.reload(),
-            Command::Theme => {
-                let dark = context.theme() == egui::Theme::Dark;
-                context.set_theme(if dark {
-                    egui::Theme::Light
-                } else {
-                    egui::Theme::Dark
-                });
-            }
-            Command::Help => self.help_open ^= true,
-            Command::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
-        }
-    }
-
-    fn zoom(&mut self, context: &Context, zoom: impl FnOnce(&mut Look, [f64; 2], Area, [u32; 2])) {
-        let (Some(rect), Some(picture)) = (self.area, &self.picture) else {
-            return;
-        };
-        let scale = f64::from(context.pixels_per_point());
-        let in_pixels = |at: egui::Pos2| [f64::from(at.x) * scale, f64::from(at.y) * scale];
-        let cursor = context.input(|input| input.pointer.hover_pos());
-        let at = cursor.filter(|at| rect.contains(*at));
-        let at = in_pixels(at.unwrap_or(rect.center()));
-        let size = picture.scene.camera.pixeldim;
-        zoom(&mut self.showing.look, at, picture::area(rect, scale), size);
-    }
-
-    fn copy_camera(&mut self, context: &Context) {
-        if let Some((viewpoint, scene)) = self.viewpoint() {
-            let mut camera = scene.camera.clone();
-            camera.viewpoint = viewpoint;
-            context.copy_text(camera_block(&camera));
-            self.say("the camera's block is in the clipboard");
-        }
-    }
-
-    fn save_changes(&mut self) {
-        match self.session.save() {
-            Ok(()) => self.wish(),
-            Err(why) => self.say(why),
-        }
-    }
-
-    fn reload(&mut self) {
-        let path = self.options.path.clone();
-        let teller = self.teller.clone();
-        let read = std::thread::Builder::new()
-            .name("reload".into())
-            .spawn(move || {
-                let news = match std::fs::read(&path) {
-                    Ok(text) => session::News::Version(session::Version::read(&path, text)),
-                    Err(error) => session::News::Unreadable(error.to_string()),
-                };
-                teller.tell(Event::File(news));
-            });
-        match read {
-            Ok(_) => self.say("read again"),
-            Err(error) => self.say(format!("cannot be read again: {error}")),
-        }
-    }
-
-    fn ask_where(&mut self) {
-        let name = Path::new(&self.session.name()).with_extension("png");
-        self.save_as = Some(SaveAs::new(name.display().to_string()));
-    }
-
-    fn save_picture(&mut self, name: &str) {
-        let Some((scene, changes)) = self.session.wanted() else {
-            return;
-        };
-        let job = save::Job {
-            gpu: Arc::clone(&self.gpu),
-            scene: Arc::clone(scene),
-            changes: changes.clone(),
-            settings: self.options.settings.clone(),
-            file: self.options.path.clone(),
-            to: name.into(),
-            software: self.options.software,
-            stop: Arc::clone(&self.closing),
-        };
-        let teller = self.teller.clone();
-        let saves = std::thread::Builder::new()
-            .name("save".into())
-            .spawn(move || teller.tell(Event::Saved(job.run())));
-        match saves {
-            Ok(_) => self.say(format!("saving {name} …")),
-            Err(error) => self.say(format!("cannot be saved: {error}")),
-        }
-    }
-
-    fn do_wanted(&mut self, context: &Context, wanted: Wanted) {
-        match wanted {
-            Wanted::Set(target, value) => self.set(target, value),
-            Wanted::Reset(target) => {
-                if self.session.discard(Some(target)) {
-                    self.wish();
-                }
-            }
-            Wanted::Discard => {
-                if self.session.discard(None) {
-                    self.wish();
-                }
-            }
-            Wanted::Save => self.save_changes(),
-            Wanted::CopyCamera => self.copy_camera(context),
-            Wanted::SavePicture => self.ask_where(),
-        }
-    }
-
-    /// What the mouse did on the picture.
-    fn take_mouse(&mut self, mouse: &Mouse) {
-        self.over = mouse.over;
-        if mouse.dragged != [0.0; 2] {
-            self.move_viewpoint(|viewpoint, scene| {
-                look::dragged(&scene.camera, viewpoint, mouse.dragged)
-            });
-        }
-        if mouse.wheel != 0.0 {
-            self.move_viewpoint(|viewpoint, scene| {
-                look::moved_away(&scene.camera, viewpoint, -mouse.wheel)
-            });
-        }
-        if mouse.clicked {
-            let again = self.panel.held == mouse.over;
-            self.panel.held = mouse.over.filter(|_| !again);
-        }
-    }
-
-    /// Asks for what the inspector shows, and for what is to be outlined.
-    fn ask(&mut self) {
-        let Some(picture) = &self.picture else {
-            return;
-        };
-        let pixel = self.panel.held.or(self.over).filter(|_| self.panel_open);
-        let seen = self
-            .seen
-            .as_ref()
-            .is_some_and(|(number, _)| *number == picture.number);
-        let objects = (self.side.hovered.is_some() || self.side.selected.is_some()) && !seen;
-        let still = picture.precision == Precision::Certified;
-        let question = (picture.number, pixel, [still, objects]);
-        if (pixel.is_none() && !objects) || self.asked == Some(question) {
-            return;
-        }
-        self.asked = Some(question);
-        self.inspector.ask(Question {
-            number: picture.number,
-            scene: Arc::clone(&picture.scene),
-            name: self.session.name(),
-            pixel,
-            still,
-            objects,
-        });
-    }
-
-    /// Outlines what is under the cursor in the lists, or was clicked there.
-    fn outline(&mut self) {
-        let entity = self.side.hovered.or(self.side.selected);
-        let (Some(entity), Some(picture), Some((number, seen))) =
-            (entity, &self.picture, &self.seen)
-        else {
-            self.showing.outlined = None;
-            self.outlined = None;
-            return;
-        };
-        if *number != picture.number {
-            self.showing.outlined = None;
-            self.outlined = None;
-            return;
-        }
-        if self.outlined == Some((*number, entity)) {
-            return;
-        }
-        let scene = &picture.scene;
-        let mut words = vec![0_u32; scene.objects.len() / 32 + 1];
-        for object in 0..scene.objects.len() {
-            if session::shows(scene, object, entity) {
-                words[(object + 1) / 32] |= 1 << ((object + 1) % 32);
-            }
-        }
-        let chosen = self
-            .gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("chosen objects"),
-                contents: bytemuck::cast_slice(&words),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
-        self.showing.outlined = Some(Outlined {
-            seen: Arc::clone(seen),
-            chosen: Arc::new(chosen),
-        });
-        self.outlined = Some((*number, entity));
+        let said = std::mem::take(&mut self.desk.lock().session.said);
+        said.into_iter().for_each(|text| self.say(text));
     }
 
     /// Pictures a second, while they come one after the other.
@@ -499,13 +209,15 @@ impl App {
 
     fn set_title(&mut self, context: &Context) {
         let kind = self.picture.as_ref().map(status::kind).unwrap_or_default();
-        let star = if self.session.changes().is_empty() {
+        let paper = self.desk.lock();
+        let session = &paper.session;
+        let star = if session.changes().is_empty() {
             ""
         } else {
             "*"
         };
-        let mut title = format!("{}{star} – plumb", self.session.name());
-        if let Some(trouble) = &self.session.trouble {
+        let mut title = format!("{}{star} – plumb", session.name());
+        if let Some(trouble) = &session.trouble {
             title.push_str(match trouble {
                 session::Trouble::Mistakes(_) => " – mistake",
                 session::Trouble::Gone => " – gone",
@@ -514,6 +226,7 @@ impl App {
         } else if !kind.is_empty() {
             title.push_str(&format!(" – {kind}"));
         }
+        drop(paper);
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -524,8 +237,9 @@ impl App {
         let frames = self.frames();
         let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
         let picture = self.picture.as_ref();
-        let working = picture.map_or(self.wished > 0, |picture| picture.number != self.wished)
-            && self.failed.is_none();
+        let wished = self.desk.lock().wished;
+        let working =
+            picture.map_or(wished > 0, |picture| picture.number != wished) && self.failed.is_none();
         let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
         let scale = f64::from(ui.ctx().pixels_per_point());
         let placed = self
@@ -553,6 +267,7 @@ impl App {
 
     fn middle(&mut self, ui: &mut Ui) {
         let rect = ui.available_rect_before_wrap();
+        let trouble = self.desk.lock().session.trouble.clone();
         match &self.picture {
             Some(picture) => {
                 let held = self.panel.held;
@@ -560,16 +275,15 @@ impl App {
                 self.area = Some(area);
                 self.take_mouse(&mouse);
             }
-            None if self.session.trouble.is_none() && self.failed.is_none() => {
+            None if trouble.is_none() && self.failed.is_none() => {
                 ui.centered_and_justified(|ui| ui.label("reading the scene …"));
             }
             None => {}
         }
-        if let Some(trouble) = &self.session.trouble {
+        if let Some(trouble) = &trouble {
             overlay::trouble(ui, rect, trouble, self.picture.is_some());
         } else if let Some(why) = &self.failed {
-            let trouble = session::Trouble::Unreadable(why.clone());
-            overlay::trouble(ui, rect, &trouble, self.picture.is_some());
+            overlay::notice(ui, rect, "The picture cannot be rendered", why);
         }
     }
 
@@ -608,7 +322,9 @@ impl eframe::App for App {
                 .show(ui, |ui| {
                     egui::ScrollArea::vertical()
                         .auto_shrink([false, false])
-                        .show(ui, |ui| side::show(ui, &mut self.side, &self.session))
+                        .show(ui, |ui| {
+                            side::show(ui, &mut self.side, &self.desk.lock().session)
+                        })
                         .inner
                 });
             for wanted in wanted.inner {
@@ -636,20 +352,5 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.closing.store(true, Ordering::Relaxed);
-    }
-}
-
-impl App {
-    /// What decided a pixel of the picture, if that is certified.
-    fn verdict(&self, [x, y]: [u32; 2]) -> Option<&'static str> {
-        let picture = self.picture.as_ref()?;
-        let [width, height] = picture.canvas.size;
-        let shown = picture.canvas.size == picture.scene.camera.pixeldim
-            && picture.precision == Precision::Certified
-            && x < width
-            && y < height;
-        let place = (height.checked_sub(1 + y)?) as usize * width as usize + x as usize;
-        let stage = shown.then(|| picture.stages.get(place)).flatten()?;
-        Some(meaning(*stage))
     }
 }

@@ -10,6 +10,7 @@
 //! Above `render`, `probe` and `edit`, which know nothing of it. Only compiled with the feature `preview`.
 
 mod app;
+mod desk;
 mod inspect;
 mod inspector;
 mod keys;

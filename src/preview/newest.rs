@@ -51,7 +51,11 @@ impl<T> Newest<T> {
     /// Puts a wish in, in place of one that was not taken yet. Returns its number: they rise.
     pub(super) fn put(&self, wish: T) -> u64 {
         let mut slot = self.shared.slot();
-        let number = self.shared.newest.load(Ordering::Relaxed) + 1;
+        let newest = self.shared.newest.load(Ordering::Relaxed);
+        if newest == CLOSED {
+            return CLOSED;
+        }
+        let number = newest + 1;
         self.shared.newest.store(number, Ordering::Release);
         *slot = Some((number, wish));
         self.shared.bell.notify_one();
@@ -59,12 +63,19 @@ impl<T> Newest<T> {
     }
 }
 
-impl<T> Drop for Newest<T> {
-    fn drop(&mut self) {
+impl<T> Newest<T> {
+    /// Ends it: there will be no more wishes, and the newest is old.
+    pub(super) fn close(&self) {
         let mut slot = self.shared.slot();
         self.shared.newest.store(CLOSED, Ordering::Release);
         *slot = None;
         self.shared.bell.notify_one();
+    }
+}
+
+impl<T> Drop for Newest<T> {
+    fn drop(&mut self) {
+        self.close();
     }
 }
 
@@ -128,8 +139,10 @@ mod tests {
         newest.put(6);
         assert!(taker.is_old(5));
         assert_eq!(taker.take(), Some((6, 6)));
-        drop(newest);
+        newest.close();
         assert!(taker.is_old(6));
+        assert_eq!(taker.take(), None);
+        newest.put(7);
         assert_eq!(taker.take(), None);
     }
 

@@ -17,6 +17,11 @@ pub(super) fn trouble(ui: &mut Ui, area: egui::Rect, trouble: &Trouble, picture:
     } else {
         title.to_owned()
     };
+    notice(ui, area, &title, text);
+}
+
+/// Shows that something is wrong, over the upper part of the picture.
+pub(super) fn notice(ui: &mut Ui, area: egui::Rect, title: &str, text: &str) {
     let color = ui.visuals().error_fg_color;
     egui::Area::new(egui::Id::unique("trouble"))
         .fixed_pos(area.left_top() + egui::vec2(8.0, 8.0))

@@ -126,7 +126,7 @@ pub(super) struct Session {
     /// Columns and rows of the picture, in place of the file's.
     size: Option<[u32; 2]>,
     /// The last version without mistakes, and its text.
-    good: Option<(Parsed, Vec<u8>)>,
+    good: Option<(Parsed, Arc<Vec<u8>>)>,
     /// What is rendered: that version, of the size that was asked for.
     sized: Option<Arc<Scene>>,
     /// What is changed on top of it.
@@ -221,7 +221,7 @@ impl Session {
             }
             self.sized = Some(sized);
         }
-        self.good = Some((parsed, text));
+        self.good = Some((parsed, Arc::new(text)));
         !same
     }
 
@@ -258,11 +258,11 @@ impl Session {
         before != self.changes
     }
 
-    /// Writes all changes into the file, touching nothing else in it. A file that was changed meanwhile is not touched.
+    /// What it takes to write all changes into the file.
     ///
     /// # Errors
-    /// Why not, in a sentence; then the file is as it was.
-    pub(super) fn save(&mut self) -> Result<(), String> {
+    /// Why that cannot be, in a sentence.
+    pub(super) fn saving(&self) -> Result<Saving, String> {
         match &self.trouble {
             None => {}
             Some(Trouble::Mistakes(_)) => {
@@ -277,26 +277,52 @@ impl Session {
         if self.changes.is_empty() {
             return Err("nothing is changed".into());
         }
-        let now = fs::read(&self.path).map_err(|error| format!("not saved: {error}"))?;
+        Ok(Saving {
+            path: self.path.clone(),
+            text: Arc::clone(text),
+            changes: self.changes.clone(),
+        })
+    }
+}
+
+/// Changes on their way into the file. Takes as long as reading it: not for the window's thread.
+#[derive(Debug)]
+pub(super) struct Saving {
+    path: PathBuf,
+    text: Arc<Vec<u8>>,
+    changes: Changes,
+}
+
+impl Saving {
+    /// Writes the changes into the file, touching nothing else in it. A file that was changed meanwhile is not touched. What
+    /// the file is now, and what was done, in a sentence.
+    ///
+    /// # Errors
+    /// Why not, in a sentence; then the file is as it was.
+    pub(super) fn run(self) -> Result<(Version, String), String> {
+        let Self {
+            path,
+            text,
+            changes,
+        } = self;
+        let now = fs::read(&path).map_err(|error| format!("not saved: {error}"))?;
         if now != *text {
             return Err("not saved: the file has just been written; try again".into());
         }
-        let written = self
-            .changes
-            .write(text)
+        let written = changes
+            .write(&text)
             .map_err(|error| format!("not saved: {error}"))?;
-        let target = File::Path(self.path.clone());
+        let target = File::Path(path.clone());
         Document::open(&target)
             .and_then(|document| document.write(&written))
             .map_err(|error| format!("not saved: {error}"))?;
-        let count = self.changes.len();
-        let version = Version::read(&self.path, written);
-        self.news(News::Version(version));
-        self.said.push(match count {
-            1 => format!("saved a change into {}", self.name()),
-            count => format!("saved {count} changes into {}", self.name()),
-        });
-        Ok(())
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        let name = name.to_string_lossy();
+        let said = match changes.len() {
+            1 => format!("saved a change into {name}"),
+            count => format!("saved {count} changes into {name}"),
+        };
+        Ok((Version::read(&path, written), said))
     }
 }
 

@@ -98,7 +98,8 @@ impl Progress {
 /// The worker, as the window has it. Dropped, it ends soon.
 #[derive(Debug)]
 pub(super) struct Worker {
-    wishes: Option<Newest<Wish>>,
+    /// Where wishes are left, by whoever has them.
+    pub(super) wishes: Arc<Newest<Wish>>,
     thread: Option<JoinHandle<()>>,
     /// How far the picture under way is.
     pub(super) progress: Arc<Progress>,
@@ -132,21 +133,16 @@ impl Worker {
             .name("render".into())
             .spawn(move || work.run(tell))?;
         Ok(Self {
-            wishes: Some(wishes),
+            wishes: Arc::new(wishes),
             thread: Some(thread),
             progress,
         })
-    }
-
-    /// Wishes for something else to be shown. Returns the number that its pictures will have.
-    pub(super) fn wish(&self, wish: Wish) -> u64 {
-        self.wishes.as_ref().map_or(0, |wishes| wishes.put(wish))
     }
 }
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.wishes = None;
+        self.wishes.close();
         if let Some(thread) = self.thread.take() {
             // A panic of the worker was printed when it happened.
             let _ = thread.join();

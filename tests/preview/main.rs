@@ -15,5 +15,6 @@ mod follows;
 mod hands;
 mod harness;
 mod program;
+mod times;
 mod window;
 mod x11;

@@ -212,6 +212,15 @@ impl Window<'_> {
         RgbImage::from_raw(width.into(), height.into(), rgb.collect())
     }
 
+    /// One pixel as it is on the screen, for who looks often.
+    pub(crate) fn pixel(&self, x: u32, y: u32) -> Option<[u8; 3]> {
+        let (x, y) = (i16::try_from(x).ok()?, i16::try_from(y).ok()?);
+        let connection = &self.display.connection;
+        let image = connection.get_image(ImageFormat::Z_PIXMAP, self.id, x, y, 1, 1, !0);
+        let data = image.unwrap().reply().ok()?.data;
+        Some([data[2], data[1], data[0]])
+    }
+
     fn assert_true_color(&self, visual: u32) {
         let mut visuals = self.display.connection.setup().roots.iter().flat_map(|r| {
             let depths = r.allowed_depths.iter();

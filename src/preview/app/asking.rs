@@ -1,0 +1,126 @@
+//! What the window wants to know of the picture: a pixel explained, which objects are seen where.
+
+use std::sync::Arc;
+
+use eframe::egui_wgpu::wgpu;
+use wgpu::util::DeviceExt as _;
+
+use super::App;
+use crate::certify::verdict::meaning;
+use crate::preview::inspect::{Answer, Question};
+use crate::preview::screen::{Outlined, Seen};
+use crate::preview::session;
+use crate::settings::Precision;
+
+impl App {
+    /// Takes what was found out.
+    pub(super) fn answered(&mut self, answer: Answer) {
+        match answer {
+            Answer::Pixel {
+                number,
+                pixel,
+                text,
+            } => self.panel.explained = Some((number, pixel, text)),
+            Answer::Objects {
+                number,
+                size,
+                objects,
+            } => {
+                let buffer =
+                    self.gpu
+                        .device
+                        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                            label: Some("objects seen"),
+                            contents: bytemuck::cast_slice(&objects),
+                            usage: wgpu::BufferUsages::STORAGE,
+                        });
+                let seen = Seen {
+                    size,
+                    objects: buffer,
+                };
+                self.seen = Some((number, Arc::new(seen)));
+                self.outlined = None;
+            }
+        }
+    }
+
+    /// Asks for what the inspector shows, and for what is to be outlined.
+    pub(super) fn ask(&mut self) {
+        let Some(picture) = &self.picture else {
+            return;
+        };
+        let pixel = self.panel.held.or(self.over).filter(|_| self.panel_open);
+        let seen = self
+            .seen
+            .as_ref()
+            .is_some_and(|(number, _)| *number == picture.number);
+        let objects = (self.side.hovered.is_some() || self.side.selected.is_some()) && !seen;
+        let still = picture.precision == Precision::Certified;
+        let question = (picture.number, pixel, [still, objects]);
+        if (pixel.is_none() && !objects) || self.asked == Some(question) {
+            return;
+        }
+        self.asked = Some(question);
+        self.inspector.ask(Question {
+            number: picture.number,
+            scene: Arc::clone(&picture.scene),
+            name: self.desk.lock().session.name(),
+            pixel,
+            still,
+            objects,
+        });
+    }
+
+    /// Outlines what is under the cursor in the lists, or was clicked there.
+    pub(super) fn outline(&mut self) {
+        let entity = self.side.hovered.or(self.side.selected);
+        let (Some(entity), Some(picture), Some((number, seen))) =
+            (entity, &self.picture, &self.seen)
+        else {
+            self.showing.outlined = None;
+            self.outlined = None;
+            return;
+        };
+        if *number != picture.number {
+            self.showing.outlined = None;
+            self.outlined = None;
+            return;
+        }
+        if self.outlined == Some((*number, entity)) {
+            return;
+        }
+        let scene = &picture.scene;
+        let mut words = vec![0_u32; scene.objects.len() / 32 + 1];
+        for object in 0..scene.objects.len() {
+            if session::shows(scene, object, entity) {
+                words[(object + 1) / 32] |= 1 << ((object + 1) % 32);
+            }
+        }
+        let chosen = self
+            .gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("chosen objects"),
+                contents: bytemuck::cast_slice(&words),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
+        self.showing.outlined = Some(Outlined {
+            seen: Arc::clone(seen),
+            chosen: Arc::new(chosen),
+        });
+        self.outlined = Some((*number, entity));
+    }
+
+    /// What decided a pixel of the picture, if that is certified.
+    pub(super) fn verdict(&self, [x, y]: [u32; 2]) -> Option<&'static str> {
+        let picture = self.picture.as_ref()?;
+        let [width, height] = picture.canvas.size;
+        let shown = picture.canvas.size == picture.scene.camera.pixeldim
+            && picture.precision == Precision::Certified
+            && x < width
+            && y < height;
+        let place = (height.checked_sub(1 + y)?) as usize * width as usize + x as usize;
+        let stage = shown.then(|| picture.stages.get(place)).flatten()?;
+        Some(meaning(*stage))
+    }
+}

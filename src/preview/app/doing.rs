@@ -1,0 +1,205 @@
+//! What keys, mouse and panels ask for, done.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use eframe::egui::{self, Context};
+use glam::DVec3;
+
+use super::{App, Event};
+use crate::edit::{Target, Value, camera_block};
+use crate::preview::keys::Command;
+use crate::preview::look::{self, Area, Look};
+use crate::preview::overlay::SaveAs;
+use crate::preview::picture::{self, Mouse};
+use crate::preview::save;
+use crate::preview::session;
+use crate::preview::side::Wanted;
+use crate::scene::{self, Scene};
+
+impl App {
+    /// The viewpoint as it is shown, and the scene as the file has it.
+    fn viewpoint(&self) -> Option<(DVec3, Arc<Scene>)> {
+        let paper = self.desk.lock();
+        let scene = Arc::clone(paper.session.wanted()?.0);
+        match paper.session.value(Target::Viewpoint)? {
+            Value::Vector(viewpoint) => Some((viewpoint, scene)),
+            Value::Number(_) => None,
+        }
+    }
+
+    fn move_viewpoint(&mut self, to: impl FnOnce(DVec3, &Scene) -> DVec3) {
+        if let Some((viewpoint, scene)) = self.viewpoint() {
+            self.set(Target::Viewpoint, to(viewpoint, &scene).into());
+        }
+    }
+
+    fn set(&mut self, target: Target, value: Value) {
+        let mut paper = self.desk.lock();
+        paper.change(|session| session.set(target, value));
+    }
+
+    fn discard(&mut self, target: Option<Target>) {
+        self.desk.lock().change(|session| session.discard(target));
+    }
+
+    pub(super) fn obey(&mut self, context: &Context, command: Command) {
+        match command {
+            Command::Step(steps) => self
+                .move_viewpoint(|viewpoint, scene| look::stepped(&scene.camera, viewpoint, steps)),
+            Command::Away(steps) => self.move_viewpoint(|viewpoint, scene| {
+                look::moved_away(&scene.camera, viewpoint, steps)
+            }),
+            Command::Reset => self.discard(Some(Target::Viewpoint)),
+            Command::Fit => self.showing.look = Look::Fit,
+            Command::OneToOne => self.zoom(context, |look, at, area, size| {
+                look.zoom_to(1.0, at, area, size);
+            }),
+            Command::Zoom(larger) => self.zoom(context, |look, at, area, size| {
+                look.step(larger, at, area, size);
+            }),
+            Command::Verdicts => self.showing.verdicts ^= true,
+            Command::Inspector => self.panel_open ^= true,
+            Command::Side => self.side_open ^= true,
+            Command::Escape => {
+                self.panel.held = None;
+                self.help_open = false;
+                self.side.selected = None;
+            }
+            Command::CopyCamera => self.copy_camera(context),
+            Command::SaveChanges => self.save_changes(),
+            Command::SavePicture => self.ask_where(),
+            Command::Reload => self.reload(),
+            Command::Theme => {
+                let dark = context.theme() == egui::Theme::Dark;
+                context.set_theme(if dark {
+                    egui::Theme::Light
+                } else {
+                    egui::Theme::Dark
+                });
+            }
+            Command::Help => self.help_open ^= true,
+            Command::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+
+    fn zoom(&mut self, context: &Context, zoom: impl FnOnce(&mut Look, [f64; 2], Area, [u32; 2])) {
+        let (Some(rect), Some(picture)) = (self.area, &self.picture) else {
+            return;
+        };
+        let scale = f64::from(context.pixels_per_point());
+        let in_pixels = |at: egui::Pos2| [f64::from(at.x) * scale, f64::from(at.y) * scale];
+        let cursor = context.input(|input| input.pointer.hover_pos());
+        let at = cursor.filter(|at| rect.contains(*at));
+        let at = in_pixels(at.unwrap_or(rect.center()));
+        let size = picture.scene.camera.pixeldim;
+        zoom(&mut self.showing.look, at, picture::area(rect, scale), size);
+    }
+
+    fn copy_camera(&mut self, context: &Context) {
+        if let Some((viewpoint, scene)) = self.viewpoint() {
+            let mut camera = scene.camera.clone();
+            camera.viewpoint = viewpoint;
+            context.copy_text(camera_block(&camera));
+            self.say("the camera's block is in the clipboard");
+        }
+    }
+
+    fn save_changes(&mut self) {
+        let saving = match self.desk.lock().session.saving() {
+            Ok(saving) => saving,
+            Err(why) => {
+                // Not under the lock.
+                self.teller.tell(Event::Saved(Err(why)));
+                return;
+            }
+        };
+        let (desk, teller) = (self.desk.clone(), self.teller.clone());
+        self.on_thread("save changes", move || {
+            let saved = saving.run().map(|(version, said)| {
+                desk.news(session::News::Version(version));
+                said
+            });
+            teller.tell(Event::Saved(saved));
+        });
+    }
+
+    fn reload(&mut self) {
+        let path = self.options.path.clone();
+        let (desk, teller) = (self.desk.clone(), self.teller.clone());
+        self.on_thread("reload", move || {
+            let news = match scene::read_file(&path) {
+                Ok(text) => session::News::Version(session::Version::read(&path, text)),
+                Err(error) => session::News::Unreadable(error.to_string()),
+            };
+            desk.news(news);
+            teller.tell(Event::Saved(Ok("read again".into())));
+        });
+    }
+
+    fn ask_where(&mut self) {
+        let name = Path::new(&self.desk.lock().session.name()).with_extension("png");
+        self.save_as = Some(SaveAs::new(name.display().to_string()));
+    }
+
+    pub(super) fn save_picture(&mut self, name: &str) {
+        let paper = self.desk.lock();
+        let Some((scene, changes)) = paper.session.wanted() else {
+            return;
+        };
+        let job = save::Job {
+            gpu: Arc::clone(&self.gpu),
+            scene: Arc::clone(scene),
+            changes: changes.clone(),
+            settings: self.options.settings.clone(),
+            file: self.options.path.clone(),
+            to: name.into(),
+            software: self.options.software,
+            stop: Arc::clone(&self.closing),
+        };
+        drop(paper);
+        let teller = self.teller.clone();
+        self.say(format!("saving {name} …"));
+        self.on_thread("save picture", move || {
+            teller.tell(Event::Saved(job.run()));
+        });
+    }
+
+    /// Does what would keep the window waiting.
+    fn on_thread(&mut self, name: &str, work: impl FnOnce() + Send + 'static) {
+        let started = std::thread::Builder::new().name(name.into()).spawn(work);
+        if let Err(error) = started {
+            self.say(format!("cannot {name}: {error}"));
+        }
+    }
+
+    pub(super) fn do_wanted(&mut self, context: &Context, wanted: Wanted) {
+        match wanted {
+            Wanted::Set(target, value) => self.set(target, value),
+            Wanted::Reset(target) => self.discard(Some(target)),
+            Wanted::Discard => self.discard(None),
+            Wanted::Save => self.save_changes(),
+            Wanted::CopyCamera => self.copy_camera(context),
+            Wanted::SavePicture => self.ask_where(),
+        }
+    }
+
+    /// What the mouse did on the picture.
+    pub(super) fn take_mouse(&mut self, mouse: &Mouse) {
+        self.over = mouse.over;
+        if mouse.dragged != [0.0; 2] {
+            self.move_viewpoint(|viewpoint, scene| {
+                look::dragged(&scene.camera, viewpoint, mouse.dragged)
+            });
+        }
+        if mouse.wheel != 0.0 {
+            self.move_viewpoint(|viewpoint, scene| {
+                look::moved_away(&scene.camera, viewpoint, -mouse.wheel)
+            });
+        }
+        if mouse.clicked {
+            let again = self.panel.held == mouse.over;
+            self.panel.held = mouse.over.filter(|_| !again);
+        }
+    }
+}

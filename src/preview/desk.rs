@@ -1,0 +1,103 @@
+//! The session and what was wished for of it, shared by the window and by who reads the file: a file that was written is
+//! rendered at once, and does not wait for the window's next frame.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use super::newest::Newest;
+use super::session::{News, Session};
+use super::worker::Wish;
+
+/// A session under a lock, which nobody holds for long.
+#[derive(Debug, Clone)]
+pub(super) struct Desk {
+    shared: Arc<Mutex<Paper>>,
+}
+
+/// The session, and the wishes of it.
+#[derive(Debug)]
+pub(super) struct Paper {
+    /// The file, and what is changed on top of it.
+    pub(super) session: Session,
+    /// The number of the newest wish.
+    pub(super) wished: u64,
+    wishes: Arc<Newest<Wish>>,
+}
+
+impl Desk {
+    /// With nothing wished for yet.
+    pub(super) fn new(session: Session, wishes: Arc<Newest<Wish>>) -> Self {
+        let paper = Paper {
+            session,
+            wished: 0,
+            wishes,
+        };
+        Self {
+            shared: Arc::new(Mutex::new(paper)),
+        }
+    }
+
+    /// The session.
+    pub(super) fn lock(&self) -> MutexGuard<'_, Paper> {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes news of the file. Whether something is rendered now; if not, there may be something to be said.
+    pub(super) fn news(&self, news: News) -> bool {
+        let mut paper = self.lock();
+        let changed = paper.session.news(news);
+        if changed {
+            paper.wish();
+        }
+        changed
+    }
+}
+
+impl Paper {
+    /// Has what is wanted now rendered.
+    pub(super) fn wish(&mut self) {
+        if let Some((scene, changes)) = self.session.wanted() {
+            self.wished = self.wishes.put(Wish {
+                scene: Arc::clone(scene),
+                changes: changes.clone(),
+                since: Instant::now(),
+            });
+        }
+    }
+
+    /// Changes something, and has it rendered where that is something else.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Session) -> bool) {
+        if change(&mut self.session) {
+            self.wish();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::newest::newest;
+    use super::super::session::Version;
+    use super::*;
+
+    const SCENE: &str = "camera cam { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 }";
+
+    #[test]
+    fn what_is_new_is_wished_for_and_nothing_else() {
+        let (wishes, taker) = newest();
+        let desk = Desk::new(Session::new("a.txt".into(), None), Arc::new(wishes));
+        let tell = |text: &str| {
+            let version = Version::read("a.txt".as_ref(), text.into());
+            desk.news(News::Version(version))
+        };
+        assert!(!tell("camera"));
+        assert_eq!(desk.lock().wished, 0);
+        assert!(tell(SCENE));
+        assert!(!tell(SCENE));
+        assert_eq!(desk.lock().wished, 1);
+        assert!(tell(&SCENE.replace("4 3 6", "5 3 6")));
+        let (number, wish) = taker.take().unwrap();
+        assert_eq!((number, wish.scene.camera.viewpoint.x), (2, 5.0));
+        desk.lock().change(|session| session.discard(None));
+        assert_eq!(desk.lock().wished, 2);
+    }
+}
