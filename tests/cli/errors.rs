@@ -63,3 +63,33 @@ fn check_tells_every_error_of_every_file() {
         "<stdin>: ok (3 objects, 0 lights, 40×30)\n"
     );
 }
+
+/// How to get the window where it was not built.
+#[cfg(not(feature = "preview"))]
+#[test]
+fn without_its_feature_preview_says_how_to_get_it() {
+    let desk = Desk::new();
+    let ways = ["--features preview", "plumb render SCENE"];
+    desk.run(&["preview", "room.txt"]).fails_with(&ways);
+}
+
+#[cfg(feature = "preview")]
+#[test]
+fn preview_refuses_what_is_no_file_before_it_opens_a_window() {
+    let desk = Desk::new();
+    desk.run(&["preview", "none.txt"])
+        .fails_with(&["none.txt: there is no such file"]);
+    desk.run(&["preview", "-"]).fails_with(&["stdin"]);
+    desk.run(&["preview", "."]).fails_with(&["directory"]);
+    let wide = [
+        "preview",
+        "room.txt",
+        "--size",
+        "1000000x10",
+        "--samples",
+        "999",
+        "--jitter",
+        "course",
+    ];
+    desk.run(&wide).fails_with(&["--jitter hash"]);
+}

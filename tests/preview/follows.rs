@@ -2,8 +2,9 @@
 
 use std::fs;
 
+use crate::program::Program;
 use crate::window::{
-    File, ROOM, SIZE, close, find, is_below, open, picture, small, wait_for_picture,
+    File, ROOM, SIZE, close, command, find, is_below, open, picture, small, wait_for_picture,
 };
 use crate::x11::Display;
 
@@ -22,6 +23,24 @@ fn the_pixels_on_the_screen_are_the_rendered_bytes() {
             window.title().contains("certified").then_some(())
         });
         wait_for_picture(&mut program, name, &picture(&scene));
+        close(program);
+    }
+}
+
+#[test]
+fn on_a_fine_screen_the_picture_has_the_pixels_of_the_screen() {
+    let display = Display::start(1800, 1400);
+    let file = File::new(ROOM);
+    for scale in ["1.5", "2"] {
+        let mut command = command(&file.path, &[]);
+        command.env("WINIT_X11_SCALE_FACTOR", scale);
+        let mut program = Program::start(&display, command);
+        program.window.focus();
+        program.wait(scale, |window| {
+            window.title().contains("certified").then_some(())
+        });
+        program.window.key('1'.into(), &[]);
+        wait_for_picture(&mut program, scale, &file.picture(ROOM));
         close(program);
     }
 }
@@ -128,6 +147,7 @@ fn a_thousand_edits_leave_the_memory_as_it_is() {
         }
     }
     let after = program.memory();
+    println!("{before} KiB after 200 edits, {after} KiB after 1,000");
     assert!(
         after < before + GROWTH_KIB,
         "{before} KiB after 200 edits, {after} KiB after 1,000"

@@ -15,6 +15,7 @@ mod follows;
 mod hands;
 mod harness;
 mod program;
+mod shots;
 mod times;
 mod window;
 mod x11;

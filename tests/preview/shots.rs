@@ -1,0 +1,75 @@
+//! The pictures of the window in docs/PREVIEW.md.
+//!
+//! ```sh
+//! cargo test --release --features preview --test preview -- --ignored shots
+//! ```
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use crate::common;
+use crate::program::Program;
+use crate::window::{File, open};
+use crate::x11::{Display, keys};
+
+/// Waits until the picture is certified and nothing moves.
+fn rest(program: &mut Program<'_>) {
+    program.wait("a certified picture", |window| {
+        window.title().contains("certified").then_some(())
+    });
+    std::thread::sleep(Duration::from_millis(1500));
+}
+
+fn save(program: &Program<'_>, name: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/preview");
+    fs::create_dir_all(&folder).unwrap();
+    let shot = program.window.screenshot().unwrap();
+    // As few colours as a small file takes.
+    let path = folder.join(name);
+    shot.save(&path).unwrap();
+    println!("{} {}", path.display(), fs::metadata(&path).unwrap().len());
+}
+
+#[test]
+#[ignore = "writes the pictures of the documentation"]
+fn shots() {
+    let display = Display::start(1400, 900);
+    // A copy, which can be written into.
+    let scene = |name: &str| File::new(&fs::read_to_string(common::scenes().join(name)).unwrap());
+    let size = ["--size", "600x400"];
+
+    let mut program = open(
+        &display,
+        &common::scenes().join("lit/mirror_and_glass.txt"),
+        &size,
+    );
+    program.window.resize(900, 640);
+    rest(&mut program);
+    // The sphere in the list, which is outlined, and a pixel that is held.
+    program.window.click(700, 154);
+    program.window.click(380, 190);
+    rest(&mut program);
+    save(&program, "inspector.png");
+    program.window.key('v'.into(), &[]);
+    program.window.key(keys::ESCAPE, &[]);
+    rest(&mut program);
+    save(&program, "verdicts.png");
+    program.close();
+
+    let file = scene("gallery/molecule.txt");
+    let mut program = open(&display, &file.path, &size);
+    program.window.resize(900, 640);
+    rest(&mut program);
+    program.window.click(700, 240);
+    rest(&mut program);
+    save(&program, "gallery.png");
+    let broken = file.read().replacen("radius", "radios", 1);
+    file.write(&broken);
+    program.wait("the mistake", |window| {
+        window.title().contains("mistake").then_some(())
+    });
+    std::thread::sleep(Duration::from_millis(700));
+    save(&program, "mistake.png");
+    program.close();
+}
