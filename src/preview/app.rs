@@ -9,6 +9,7 @@ mod doing;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Rect, Ui};
@@ -17,7 +18,7 @@ use super::desk::Desk;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
 use super::keys;
-use super::overlay::{self, Chosen, SaveAs};
+use super::overlay::{self, Chosen, Leaving, SaveAs};
 use super::picture::{self, Showing};
 use super::screen::{self, Seen};
 use super::session::{self, Session};
@@ -86,6 +87,10 @@ pub(super) struct App {
     area: Option<Rect>,
     help_open: bool,
     save_as: Option<SaveAs>,
+    /// Whether the window is to be closed, and asks what becomes of changes; once they are saved, in which case it does not ask.
+    leaving: Option<bool>,
+    /// What is being saved or read beside the window.
+    threads: Vec<JoinHandle<()>>,
     /// Set when the window closes: pictures that are being saved are given up.
     closing: Arc<AtomicBool>,
     said: Option<(String, Instant)>,
@@ -156,6 +161,8 @@ impl App {
             area: None,
             help_open: false,
             save_as: None,
+            leaving: None,
+            threads: Vec::new(),
             closing: Arc::new(AtomicBool::new(false)),
             said: None,
             came: Vec::new(),
@@ -189,7 +196,14 @@ impl App {
                     }
                 }
                 Event::Inspected(answer) => self.answered(answer),
-                Event::Saved(Ok(text) | Err(text)) => self.say(text),
+                Event::Saved(saved) => {
+                    if let (Err(_), Some(true)) = (&saved, self.leaving) {
+                        // There is something to be read first.
+                        self.leaving = None;
+                    }
+                    let (Ok(text) | Err(text)) = saved;
+                    self.say(text);
+                }
             }
         }
         let said = std::mem::take(&mut self.desk.lock().session.said);
@@ -302,6 +316,37 @@ impl App {
     }
 }
 
+impl App {
+    /// Asks before changes are lost.
+    fn leave(&mut self, context: &Context) {
+        let lost = self.desk.lock().session.to_be_lost();
+        let name = self.desk.lock().session.name();
+        let asked_to = context.input(|input| input.viewport().close_requested());
+        if asked_to && lost > 0 && self.leaving.is_none() {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.leaving = Some(false);
+        }
+        let close = egui::ViewportCommand::Close;
+        match self.leaving {
+            Some(true) if lost == 0 => context.send_viewport_cmd(close),
+            Some(false) => match overlay::leaving(context, lost, &name) {
+                Some(Leaving::Save) => {
+                    self.leaving = Some(true);
+                    self.save_changes();
+                }
+                Some(Leaving::Lose) => {
+                    self.desk.lock().change(|session| session.discard(None));
+                    self.leaving = None;
+                    context.send_viewport_cmd(close);
+                }
+                Some(Leaving::Stay) => self.leaving = None,
+                None => {}
+            },
+            Some(true) | None => {}
+        }
+    }
+}
+
 impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         self.listen();
@@ -310,7 +355,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        if self.save_as.is_none() {
+        if self.save_as.is_none() && self.leaving.is_none() {
             for command in keys::pressed(&context) {
                 self.obey(&context, command);
             }
@@ -320,12 +365,7 @@ impl eframe::App for App {
             let wanted = egui::Panel::right("side")
                 .default_size(side::WIDTH)
                 .show(ui, |ui| {
-                    egui::ScrollArea::vertical()
-                        .auto_shrink([false, false])
-                        .show(ui, |ui| {
-                            side::show(ui, &mut self.side, &self.desk.lock().session)
-                        })
-                        .inner
+                    side::show(ui, &mut self.side, &self.desk.lock().session)
                 });
             for wanted in wanted.inner {
                 self.do_wanted(&context, wanted);
@@ -346,11 +386,17 @@ impl eframe::App for App {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| self.middle(ui));
         self.dialogs(&context);
+        self.leave(&context);
         self.ask();
         self.outline();
     }
 
     fn on_exit(&mut self) {
         self.closing.store(true, Ordering::Relaxed);
+        // What is being written into the scene's file is written to its end; pictures are given up.
+        for thread in self.threads.drain(..) {
+            // A panic was printed when it happened.
+            let _ = thread.join();
+        }
     }
 }

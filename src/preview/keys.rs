@@ -184,7 +184,6 @@ fn command(key: Key, modifiers: Modifiers) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui;
     use egui_kittest::Harness;
 
     fn listening() -> Harness<'static, Vec<Command>> {
@@ -223,7 +222,7 @@ mod tests {
             harness.key_press(Key::V);
         }
         harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::S);
-        harness.event(egui::Event::PointerGone);
+        harness.event(Event::PointerGone);
         harness.run_steps(8);
         let verdicts = Command::Verdicts;
         assert_eq!(
@@ -254,7 +253,7 @@ mod tests {
             (String::new(), Vec::new()),
         );
         harness.run_steps(3);
-        harness.event(egui::Event::Text("v".into()));
+        harness.event(Event::Text("v".into()));
         harness.key_press(Key::V);
         harness.run_steps(3);
         assert_eq!(harness.state().0, "v");

@@ -60,6 +60,47 @@ pub(super) fn help(context: &Context, open: &mut bool) {
         });
 }
 
+/// What to do with changes when the window is to be closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Leaving {
+    /// Write them into the file, then close.
+    Save,
+    /// Close without.
+    Lose,
+    /// Not to close.
+    Stay,
+}
+
+/// Asks what to do with so many changes; none as long as there is no answer.
+pub(super) fn leaving(context: &Context, changes: usize, name: &str) -> Option<Leaving> {
+    let mut chosen = None;
+    egui::Window::new("Close the window?")
+        .collapsible(false)
+        .resizable(false)
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .show(context, |ui| {
+            ui.label(match changes {
+                1 => format!("A change is not in {name}."),
+                changes => format!("{changes} changes are not in {name}."),
+            });
+            ui.horizontal(|ui| {
+                for (text, choice) in [
+                    ("Save and close", Leaving::Save),
+                    ("Close without", Leaving::Lose),
+                    ("Stay", Leaving::Stay),
+                ] {
+                    if ui.button(text).clicked() {
+                        chosen = Some(choice);
+                    }
+                }
+            });
+            if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+                chosen = Some(Leaving::Stay);
+            }
+        });
+    chosen
+}
+
 /// Where to save the picture.
 #[derive(Debug, Default)]
 pub(super) struct SaveAs {
@@ -147,6 +188,28 @@ mod tests {
                 let last = harness.query_by_label_contains("last good picture");
                 assert_eq!(last.is_some(), picture);
             }
+        }
+    }
+
+    #[test]
+    fn what_becomes_of_changes_is_asked_for() {
+        for (button, answer) in [
+            ("Save and close", Leaving::Save),
+            ("Close without", Leaving::Lose),
+            ("Stay", Leaving::Stay),
+        ] {
+            let mut harness = Harness::new_ui_state(
+                |ui, chosen: &mut Option<Leaving>| {
+                    *chosen = chosen.or(leaving(ui.ctx(), 3, "room.txt"));
+                },
+                None,
+            );
+            harness.run_steps(3);
+            harness.get_by_label("3 changes are not in room.txt.");
+            assert_eq!(*harness.state(), None);
+            harness.get_by_label(button).click();
+            harness.run_steps(3);
+            assert_eq!(*harness.state(), Some(answer));
         }
     }
 

@@ -225,6 +225,12 @@ impl Session {
         !same
     }
 
+    /// How many changes there are besides the viewpoint, which one changes by looking around.
+    pub(super) fn to_be_lost(&self) -> usize {
+        let looks = self.changes.get(Target::Viewpoint).is_some();
+        self.changes.len() - usize::from(looks)
+    }
+
     /// A value as it is shown: the change, else what the file has.
     pub(super) fn value(&self, target: Target) -> Option<Value> {
         let (scene, changes) = self.wanted()?;

@@ -12,6 +12,9 @@ use crate::scene::{EntityId, Scene, Shape, Surface};
 /// Width of the panel when it is opened first, in points.
 pub(super) const WIDTH: f32 = 270.0;
 
+/// Height for what was clicked, in points.
+const SELECTED: f32 = 250.0;
+
 /// What the user wants done.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Wanted {
@@ -42,6 +45,8 @@ pub(super) struct Side {
 pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wanted> {
     let mut wanted = Vec::new();
     side.hovered = None;
+    // A panel is as wide as what was in it last, and at first there is little.
+    ui.set_min_width(ui.available_width());
     let Some(scene) = session.good().map(|good| &good.scene) else {
         ui.weak("Nothing to show yet.");
         return wanted;
@@ -50,14 +55,27 @@ pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wante
     side.selected = side
         .selected
         .filter(|entity| title(scene, *entity).is_some());
-    view(ui, session, scene, &mut wanted);
-    changes(ui, session, &mut wanted);
+    // Below, so that the lists stay where they are when something is clicked.
     if let Some(entity) = side.selected {
-        ui.separator();
-        selected(ui, entity, session, scene, &mut wanted);
+        egui::Panel::bottom("selected")
+            .resizable(true)
+            .default_size(SELECTED)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical()
+                    .id_salt("selected")
+                    .auto_shrink([false, false])
+                    .show(ui, |ui| selected(ui, entity, session, scene, &mut wanted));
+            });
     }
-    ui.separator();
-    lists(ui, side, scene);
+    egui::ScrollArea::vertical()
+        .id_salt("lists")
+        .auto_shrink([false, false])
+        .show(ui, |ui| {
+            view(ui, session, scene, &mut wanted);
+            changes(ui, session, &mut wanted);
+            ui.separator();
+            lists(ui, side, scene);
+        });
     wanted
 }
 

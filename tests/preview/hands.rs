@@ -92,7 +92,7 @@ fn pixels_are_enlarged_up_to_64_times() {
     let (x, y) = wait_for_picture(&mut program, "the first picture", &good);
     // A pixel of the ball's edge, and its neighbour.
     let (column, row) = (160, 120);
-    let at = (x as i32 + column as i32, y as i32 + row as i32);
+    let at = (x as i32 + column, y as i32 + row);
     program.window.move_to(at.0, at.1);
     for _ in 0..20 {
         program.window.key('+'.into(), &[]);
@@ -107,7 +107,7 @@ fn pixels_are_enlarged_up_to_64_times() {
         };
         (-2..=2).all(|dx| {
             (-2..=2).all(|dy| {
-                let (c, r) = (column as i32 + dx, row as i32 + dy);
+                let (c, r) = (column + dx, row + dy);
                 cell(dx, dy) == wanted(c as u32, r as u32)
             })
         })
@@ -257,4 +257,53 @@ fn without_a_display_or_a_gpu_it_says_what_else_there_is() {
         command.env("VK_ICD_FILENAMES", "/dev/null");
     });
     assert!(blind.contains("mesa-vulkan-drivers"), "{blind}");
+}
+
+#[test]
+fn a_slider_changes_a_number_which_is_not_lost_by_closing() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
+    program.window.resize(800, 600);
+    // The ball in the list; it is outlined.
+    program.window.click(560, 113);
+    program.wait_for("the outline", |shot| {
+        shot.pixels().any(|pixel| *pixel == Rgb([255, 140, 0]))
+    });
+    // The handle of its radius, in the panel below.
+    program.window.move_to(601, 404);
+    program.window.press(LEFT);
+    for step in 1..=8 {
+        program.window.move_to(601 + 2 * step, 404);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    program.wait("the change", |window| {
+        window.title().contains('*').then_some(())
+    });
+    program.window.release(LEFT);
+    assert_eq!(file.read(), ROOM);
+    let before = program.window.screenshot().unwrap();
+    program.window.ask_to_close();
+    // It asks first: in the middle, where nothing else changes.
+    program.wait_for("the question", |shot| {
+        shot.dimensions() == before.dimensions()
+            && shot.get_pixel(400, 300) != before.get_pixel(400, 300)
+    });
+    program.window.key(keys::ESCAPE, &[]);
+    program.wait_for("the question's end", |shot| {
+        shot.get_pixel(400, 300) == before.get_pixel(400, 300)
+    });
+    program.window.key('s'.into(), &[keys::CONTROL]);
+    let text = program.wait("the saved radius", |_| {
+        Some(file.read()).filter(|text| text != ROOM)
+    });
+    let radius = text.split("radius ").nth(1).unwrap();
+    let radius = radius.split(' ').next().unwrap();
+    assert!(radius.parse::<f64>().unwrap() > 2.5, "{radius}");
+    assert_eq!(
+        text,
+        ROOM.replace("radius 2.5", &format!("radius {radius}"))
+    );
+    close(program);
 }

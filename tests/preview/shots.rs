@@ -47,7 +47,7 @@ fn shots() {
     program.window.resize(900, 640);
     rest(&mut program);
     // The sphere in the list, which is outlined, and a pixel that is held.
-    program.window.click(700, 154);
+    program.window.click(700, 181);
     program.window.click(380, 190);
     rest(&mut program);
     save(&program, "inspector.png");
@@ -61,7 +61,7 @@ fn shots() {
     let mut program = open(&display, &file.path, &size);
     program.window.resize(900, 640);
     rest(&mut program);
-    program.window.click(700, 240);
+    program.window.click(700, 165);
     rest(&mut program);
     save(&program, "gallery.png");
     let broken = file.read().replacen("radius", "radios", 1);

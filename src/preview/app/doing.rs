@@ -105,7 +105,7 @@ impl App {
         }
     }
 
-    fn save_changes(&mut self) {
+    pub(super) fn save_changes(&mut self) {
         let saving = match self.desk.lock().session.saving() {
             Ok(saving) => saving,
             Err(why) => {
@@ -167,9 +167,10 @@ impl App {
 
     /// Does what would keep the window waiting.
     fn on_thread(&mut self, name: &str, work: impl FnOnce() + Send + 'static) {
-        let started = std::thread::Builder::new().name(name.into()).spawn(work);
-        if let Err(error) = started {
-            self.say(format!("cannot {name}: {error}"));
+        self.threads.retain(|thread| !thread.is_finished());
+        match std::thread::Builder::new().name(name.into()).spawn(work) {
+            Ok(thread) => self.threads.push(thread),
+            Err(error) => self.say(format!("cannot {name}: {error}")),
         }
     }
 

@@ -143,6 +143,15 @@ fn changes_are_discarded_one_by_one_or_all() {
 }
 
 #[test]
+fn looking_around_is_nothing_to_lose() {
+    let (_folder, mut session) = session(SCENE);
+    session.set(Target::Viewpoint, DVec3::new(5.0, 3.0, 6.0).into());
+    assert_eq!((session.changes().len(), session.to_be_lost()), (1, 0));
+    session.set(RADIUS, 3.0.into());
+    assert_eq!((session.changes().len(), session.to_be_lost()), (2, 1));
+}
+
+#[test]
 fn saving_writes_numbers_and_nothing_else() {
     let (_folder, mut session) = session(SCENE);
     session.set(RADIUS, 3.0.into());
