@@ -28,7 +28,6 @@ fn save(program: &Program<'_>, name: &str) {
     // As few colours as a small file takes.
     let path = folder.join(name);
     shot.save(&path).unwrap();
-    println!("{} {}", path.display(), fs::metadata(&path).unwrap().len());
 }
 
 #[test]
