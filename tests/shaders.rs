@@ -780,17 +780,17 @@ mod layout {
         let job = size_of::<pack::Job>();
         let behind = |offset: usize| job + offset;
         let ours = [
-            ("camera_anchor", offset_of!(pack::MovingCamera, anchor)),
-            ("camera_step", offset_of!(pack::MovingCamera, step)),
-            ("camera_offset", offset_of!(pack::MovingCamera, offset)),
-            ("camera_distance", offset_of!(pack::MovingCamera, distance)),
-            ("camera_gain", offset_of!(pack::MovingCamera, gain)),
-            ("unit", offset_of!(pack::MovingCamera, unit)),
-            ("camera_unused", offset_of!(pack::MovingCamera, unused)),
+            ("camera_anchor", offset_of!(pack::CameraNumbers, anchor)),
+            ("camera_step", offset_of!(pack::CameraNumbers, step)),
+            ("camera_offset", offset_of!(pack::CameraNumbers, offset)),
+            ("camera_distance", offset_of!(pack::CameraNumbers, distance)),
+            ("camera_gain", offset_of!(pack::CameraNumbers, gain)),
+            ("unit", offset_of!(pack::CameraNumbers, unit)),
+            ("camera_unused", offset_of!(pack::CameraNumbers, unused)),
         ]
         .map(|(name, offset)| (name.to_owned(), behind(offset)));
         assert_eq!(members[4..], ours);
-        assert_eq!(span, job + size_of::<pack::MovingCamera>());
+        assert_eq!(span, job + size_of::<pack::CameraNumbers>());
     }
 
     #[test]

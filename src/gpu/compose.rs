@@ -123,7 +123,7 @@ pub fn compose(packed: &Packed, features: &FeatureSet) -> String {
 
 /// The numbers that the text refers to by name.
 fn constants(packed: &Packed, features: &FeatureSet) -> String {
-    let camera = &packed.camera;
+    let camera = &packed.camera.numbers;
     let mut lines = vec![format!("const WORKGROUP = {WORKGROUP};")];
     let names = features.names();
     if features.any_object() && !names.contains("moving") {

@@ -10,7 +10,7 @@ use wgpu::util::DeviceExt as _;
 use super::GpuError;
 use super::device::Gpu;
 use super::features::{FeatureSet, QUAD};
-use super::pack::{LitObject, MovingCamera, Object, Packed};
+use super::pack::{CameraNumbers, LitObject, Object, Packed};
 
 /// A shader ready to run on a scene.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub struct Pipeline {
     /// Words of a record that the shader leaves of a pixel with sure and doubtful samples; 0 where it leaves none.
     pub partial_words: u32,
     /// The camera, where the shader reads it from its job.
-    pub camera: Option<MovingCamera>,
+    pub camera: Option<CameraNumbers>,
     /// Seconds for compiling, and for packing and uploading.
     pub seconds: [f64; 2],
     buffers: Vec<(u32, wgpu::Buffer)>,
@@ -77,7 +77,7 @@ impl Pipeline {
                 0
             },
             partial_words: features.partial_words(),
-            camera: names.contains("moving").then(|| (&packed.camera).into()),
+            camera: names.contains("moving").then_some(packed.camera.numbers),
             seconds: [compile_seconds, upload_seconds],
             buffers,
         })

@@ -159,7 +159,7 @@ impl Lanes {
             let across = std::array::from_fn(|i| (first + i as i32) as f32);
             (across, (y as i32 - anchor[1]) as f32)
         };
-        let at = from(packed.camera.anchor);
+        let at = from(packed.camera.numbers.anchor);
         let mut closest = Closest::new();
         for rectangle in &packed.rectangles {
             rectangle_hits(rectangle, &at, &mut closest);

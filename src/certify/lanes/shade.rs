@@ -7,7 +7,7 @@ impl Lanes {
     /// The colours of the closest hits: `ray_trace` and `camera_setpix`.
     pub(super) fn shade(&self, at: &(Lane, f32), closest: &Closest) -> Eight {
         let packed = &self.packed;
-        let camera = &packed.camera;
+        let camera = &packed.camera.numbers;
         let wy = at.1 * camera.step[1] + camera.offset[1];
         let rest = wy * wy + camera.distance * camera.distance;
         let mut rays = Rays {
@@ -99,7 +99,7 @@ impl Lanes {
         };
         for i in 0..LANES {
             let s = 1.0 / closest.inverse[i];
-            let [x, y, z] = [rays.wx[i] * s, rays.wy * s, -camera.distance * s];
+            let [x, y, z] = [rays.wx[i] * s, rays.wy * s, -camera.numbers.distance * s];
             let length = rays.w2[i] * rays.inverse_length[i];
             let error = 1.01 * s * (camera.w_error + length * (s * closest.error[i] + 5.0 * u));
             let error = error + index_roundings * u * (x.abs() + y.abs() + z.abs());

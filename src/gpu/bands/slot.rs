@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::super::GpuError;
 use super::super::compose::WORKGROUP;
 use super::super::device::Gpu;
-use super::super::pack::{Job, MovingCamera};
+use super::super::pack::{CameraNumbers, Job};
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::partial;
@@ -46,7 +46,7 @@ impl Slot {
         let size = partial::Layout::new(pipeline, largest).bytes;
         let job = buffer(
             "job",
-            (size_of::<Job>() + size_of::<MovingCamera>()) as u64,
+            (size_of::<Job>() + size_of::<CameraNumbers>()) as u64,
             wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         );
         if let Some(camera) = &pipeline.camera {

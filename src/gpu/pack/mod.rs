@@ -68,7 +68,7 @@ impl Kind {
 #[derive(Debug, Clone)]
 pub struct Packed {
     /// The camera.
-    pub camera: CameraText,
+    pub camera: PackedCamera,
     /// Lengths are in units of 2^scale.
     pub scale: i32,
     /// One for each object of the scene.
@@ -241,7 +241,7 @@ impl Packed {
             _ => 0.0,
         });
         let most = objects.chain(others).chain(wheels).fold(1e-30, f64::max);
-        (0.9 / (most * 1.001 * f64::from(self.camera.gain))).min(f64::from(f32::MAX)) as f32
+        (0.9 / (most * 1.001 * f64::from(self.camera.numbers.gain))).min(f64::from(f32::MAX)) as f32
     }
 
     /// Packs what modulates an object's material, and notes it in the object.
@@ -348,7 +348,7 @@ pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
     [v.x.value as f32, v.y.value as f32, v.z.value as f32]
 }
 
-fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> CameraText {
+fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
     let unit = prepare::exact::two_to(-camera.scale);
     let reach = screen.reach(camera.anchor);
     let d = camera.distance.value;
@@ -356,13 +356,16 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> CameraText {
     let parts = [0, 1].map(|i| most(camera.step[i]) * reach[i] + offset[i]);
     // κ − 1 = Σ 2o/(√(d² + o²) − o): docs/NUMERICS.md.
     let more = offset.map(|o| 2.0 * o / ((d * d + o * o).sqrt() - o));
-    CameraText {
-        anchor: camera.anchor,
-        step: camera.step.map(|v| v.value as f32),
-        offset: camera.offset.map(|v| v.value as f32),
-        distance: d as f32,
-        gain: (255.0 * unit) as f32,
-        unit: unit as f32,
+    PackedCamera {
+        numbers: CameraNumbers {
+            anchor: camera.anchor,
+            step: camera.step.map(|v| v.value as f32),
+            offset: camera.offset.map(|v| v.value as f32),
+            distance: d as f32,
+            gain: (255.0 * unit) as f32,
+            unit: unit as f32,
+            unused: 0,
+        },
         w_error: up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
         spread: up(1.0 + more[0] + more[1]),
     }

@@ -12,8 +12,8 @@ fn fine(numbers: &[f32]) -> bool {
 impl Packed {
     /// Why no bound is to be relied on: a number so large that products of such numbers might overflow.
     pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
-        let camera = &self.camera;
-        let far = f64::from(camera.spread) <= 64.0
+        let camera = &self.camera.numbers;
+        let far = f64::from(self.camera.spread) <= 64.0
             && fine(&camera.offset)
             && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
             && fine(&[camera.gain, 1.0 / camera.gain])

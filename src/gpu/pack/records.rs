@@ -189,7 +189,7 @@ pub struct Job {
 /// The camera in `Job`, where the shader reads it from there: behind what [`Job`] has.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct MovingCamera {
+pub struct CameraNumbers {
     /// Pixel next to the viewpoint.
     pub anchor: [i32; 2],
     /// From one pixel to the next.
@@ -206,35 +206,11 @@ pub struct MovingCamera {
     pub unused: u32,
 }
 
-impl From<&CameraText> for MovingCamera {
-    fn from(camera: &CameraText) -> Self {
-        Self {
-            anchor: camera.anchor,
-            step: camera.step,
-            offset: camera.offset,
-            distance: camera.distance,
-            gain: camera.gain,
-            unit: camera.unit,
-            unused: 0,
-        }
-    }
-}
-
-/// The camera's numbers, which go into the text of the shader as a rule.
+/// What the shader is told of the camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CameraText {
-    /// Pixel next to the viewpoint.
-    pub anchor: [i32; 2],
-    /// From one pixel to the next.
-    pub step: [f32; 2],
-    /// W.x and W.y at the anchor.
-    pub offset: [f32; 2],
-    /// −W.z.
-    pub distance: f32,
-    /// 255 / 2^scale.
-    pub gain: f32,
-    /// 1 / 2^scale.
-    pub unit: f32,
+pub struct PackedCamera {
+    /// Its numbers, which go into the text of the shader as a rule.
+    pub numbers: CameraNumbers,
     /// Bound of the error of W, as a vector.
     pub w_error: f32,
     /// κ ≥ 1 (docs/NUMERICS.md): the terms that W·W is a sum of, over W·W.
