@@ -32,8 +32,8 @@ pub(super) struct Showing {
     pub(super) look: Look,
     /// Whether what decided each pixel is painted over it.
     pub(super) verdicts: bool,
-    /// How far the drag that goes on has come.
-    dragged: egui::Vec2,
+    /// The button that drags, and where the mouse was when that was last followed, in points.
+    dragging: Option<(PointerButton, Pos2)>,
     /// What is outlined.
     pub(super) outlined: Option<Outlined>,
 }
@@ -53,17 +53,10 @@ pub(super) fn show(
     let in_pixels = |at: Pos2| [f64::from(at.x) * scale, f64::from(at.y) * scale];
     let over = response.hover_pos().map(in_pixels);
     let mut mouse = Mouse::default();
-    // From where the button went down: a drag counts as one only after a few pixels, which must not be lost.
-    let total = response.total_drag_delta().unwrap_or_default();
-    let delta = total - showing.dragged;
-    showing.dragged = if response.dragged() {
-        total
-    } else {
-        egui::Vec2::ZERO
-    };
-    if delta != egui::Vec2::ZERO && (response.dragged() || response.drag_stopped()) {
+    let (delta, button) = dragged(ui, &response, &mut showing.dragging);
+    if delta != egui::Vec2::ZERO {
         let by = [f64::from(delta.x) * scale, f64::from(delta.y) * scale];
-        if response.dragged_by(PointerButton::Primary) {
+        if button == Some(PointerButton::Primary) {
             let zoom = showing.look.place(area, size).zoom;
             mouse.dragged = by.map(|pixels| pixels / zoom);
         } else {
@@ -121,6 +114,34 @@ pub(super) fn area(rect: Rect, scale: f64) -> Area {
     let corner = [rect.left(), rect.top()].map(|at| (f64::from(at) * scale).round());
     let size = [rect.width(), rect.height()].map(|length| (f64::from(length) * scale).floor());
     Area { corner, size }
+}
+
+/// How far the mouse was dragged since this was last asked, in points, and by which button. All of the way counts: what goes by
+/// before egui takes it for a drag, and what comes together with the release; so what was grabbed stays under the cursor.
+fn dragged(
+    ui: &Ui,
+    response: &egui::Response,
+    dragging: &mut Option<(PointerButton, Pos2)>,
+) -> (egui::Vec2, Option<PointerButton>) {
+    let (origin, now) = ui.input(|input| {
+        let pointer = &input.pointer;
+        (pointer.press_origin(), pointer.interact_pos())
+    });
+    if response.drag_started() {
+        let mut buttons = [
+            PointerButton::Primary,
+            PointerButton::Secondary,
+            PointerButton::Middle,
+        ]
+        .into_iter();
+        let button = buttons.find(|button| response.drag_started_by(*button));
+        *dragging = button.zip(origin);
+    }
+    let (Some((button, last)), Some(now)) = (*dragging, now) else {
+        return (egui::Vec2::ZERO, None);
+    };
+    *dragging = response.dragged().then_some((button, now));
+    (now - last, Some(button))
 }
 
 /// Notches that the wheel was turned away from the user, and the same with Ctrl.

@@ -1,12 +1,61 @@
 //! What the hands do: keys, mouse, and what becomes of the file.
 
-use image::Rgb;
+use image::{Rgb, RgbImage};
 use plumb::certify::Stage;
 use plumb::certify::verdict::color;
 use plumb::render::{Backend, Settings, render};
 
-use crate::window::{File, ROOM, SIZE, close, command, open, picture, small, wait_for_picture};
-use crate::x11::{Display, LEFT, keys};
+use crate::program::Program;
+use crate::window::{
+    File, ROOM, SIZE, close, command, find, open, picture, small, wait_for_picture,
+};
+use crate::x11::{Display, LEFT, MIDDLE, RIGHT, keys};
+
+/// The picture is at this place, and a moment later still is.
+fn stays(program: &mut Program<'_>, picture: &RgbImage, place: (u32, u32)) {
+    for _ in 0..10 {
+        std::thread::sleep(std::time::Duration::from_millis(30));
+        let found = program.wait("a screenshot", |window| window.screenshot());
+        assert_eq!(find(&found, picture), Some(place));
+    }
+}
+
+#[test]
+fn the_picture_is_moved_by_the_other_buttons_and_stays_there() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    let good = file.picture(ROOM);
+    let (x, y) = wait_for_picture(&mut program, "the first picture", &good);
+    for (button, by) in [(RIGHT, (40, 24)), (MIDDLE, (-60, -36))] {
+        let (from, to) = ((x as i32 + 100, y as i32 + 100), (by.0, by.1));
+        program.window.move_to(from.0, from.1);
+        program.window.press(button);
+        for step in 1..=4 {
+            program
+                .window
+                .move_to(from.0 + to.0 * step / 4, from.1 + to.1 * step / 4);
+            std::thread::sleep(std::time::Duration::from_millis(30));
+        }
+        let dragged = program.wait("the moved picture", |window| {
+            find(&window.screenshot()?, &good).filter(|place| *place != (x, y))
+        });
+        program.window.release(button);
+        let place = |from: u32, by: i32| (from as i32 + by) as u32;
+        let wanted = if button == RIGHT {
+            (place(x, 40), place(y, 24))
+        } else {
+            (place(x, -20), place(y, -12))
+        };
+        program.wait("the picture where it was let go", |window| {
+            (find(&window.screenshot()?, &good)? == wanted).then_some(())
+        });
+        stays(&mut program, &good, wanted);
+        assert!(dragged != (x, y));
+    }
+    assert_eq!(file.read(), ROOM);
+    close(program);
+}
 
 #[test]
 fn the_viewpoint_is_moved_and_written_into_the_file() {
@@ -27,8 +76,11 @@ fn the_viewpoint_is_moved_and_written_into_the_file() {
     let moved =
         |viewpoint: &str| ROOM.replace("viewpoint 4 3 6", &format!("viewpoint {viewpoint}"));
     let dragged = moved("5 2.5 6");
-    wait_for_picture(&mut program, "the drag", &file.picture(&dragged));
+    let picture = file.picture(&dragged);
+    let place = wait_for_picture(&mut program, "the drag", &picture);
+    assert_eq!(place, (x as u32, y as u32));
     program.window.release(LEFT);
+    stays(&mut program, &picture, place);
     // The file is as it was until it is saved.
     assert_eq!(file.read(), ROOM);
     program.window.key('s'.into(), &[keys::CONTROL]);
@@ -220,7 +272,7 @@ fn a_storm_of_sizes_is_survived_while_a_slow_scene_renders() {
         Ok(())
     })
     .unwrap();
-    let right = image::RgbImage::from_raw(400, 300, rgb).unwrap();
+    let right = RgbImage::from_raw(400, 300, rgb).unwrap();
     wait_for_picture(&mut program, "the picture after the storm", &right);
     assert_eq!(program.window.size(), (1000, 800));
     close(program);
