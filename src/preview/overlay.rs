@@ -23,7 +23,7 @@ pub(super) fn trouble(ui: &mut Ui, area: egui::Rect, trouble: &Trouble, picture:
 /// Shows that something is wrong, over the upper part of the picture.
 pub(super) fn notice(ui: &mut Ui, area: egui::Rect, title: &str, text: &str) {
     let color = ui.visuals().error_fg_color;
-    egui::Area::new(egui::Id::unique("trouble"))
+    egui::Area::new(area_of(title, text))
         .fixed_pos(area.left_top() + egui::vec2(8.0, 8.0))
         .constrain_to(area)
         .order(egui::Order::Middle)
@@ -40,6 +40,11 @@ pub(super) fn notice(ui: &mut Ui, area: egui::Rect, title: &str, text: &str) {
                         });
                 });
         });
+}
+
+/// The area for a text. Each has its own: an area stays as large as it was for what was in it first.
+fn area_of(title: &str, text: &str) -> egui::Id {
+    egui::Id::unique(("trouble", title, text))
 }
 
 /// Shows what keys and mouse do.
@@ -211,6 +216,25 @@ mod tests {
             harness.run_steps(3);
             assert_eq!(*harness.state(), Some(answer));
         }
+    }
+
+    /// An area remembers its size; a longer text must not be cut to it.
+    #[test]
+    fn a_longer_mistake_after_a_short_one_is_seen_whole() {
+        let mut harness = Harness::builder().with_size([600.0, 400.0]).build_ui_state(
+            |ui, text: &mut String| notice(ui, ui.max_rect(), "title", text),
+            String::from("short"),
+        );
+        harness.run();
+        let long = "1\n2\n3\n4\n5\n6\n7\n8";
+        *harness.state_mut() = long.into();
+        harness.run();
+        let label = harness.get_by_label(long).rect();
+        let area = harness
+            .ctx
+            .memory(|memory| memory.area_rect(area_of("title", long)));
+        let area = area.unwrap();
+        assert!(area.contains_rect(label), "{label} is not in {area}");
     }
 
     fn asking(name: &str) -> Harness<'static, (SaveAs, Chosen)> {

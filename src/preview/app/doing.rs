@@ -1,5 +1,6 @@
 //! What keys, mouse and panels ask for, done.
 
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -15,7 +16,7 @@ use crate::preview::picture::{self, Mouse};
 use crate::preview::save;
 use crate::preview::session;
 use crate::preview::side::Wanted;
-use crate::scene::{self, Scene};
+use crate::scene::{self, LoadError, Scene};
 
 impl App {
     /// The viewpoint as it is shown, and the scene as the file has it.
@@ -130,6 +131,9 @@ impl App {
         self.on_thread("reload", move || {
             let news = match scene::read_file(&path) {
                 Ok(text) => session::News::Version(session::Version::read(&path, text)),
+                Err(LoadError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
+                    session::News::Gone
+                }
                 Err(error) => session::News::Unreadable(error.to_string()),
             };
             desk.news(news);
