@@ -37,8 +37,12 @@ pub struct Gpu {
 /// Lanes of a software driver's vectors, 256 bits wide as a rule.
 pub const SOFTWARE_LANES: u32 = 8;
 
-/// How wgpu says that it could not set a surface up because the device did not come idle.
-const SURFACE_BUSY: &str = "before reconfiguring the Surface";
+/// Whether wgpu says that a window's surface could not be set up anew because the device did not come idle, or that a frame was
+/// drawn for another size than the surface has after that.
+fn is_of_a_stale_surface(error: &str) -> bool {
+    error.contains("before reconfiguring the Surface")
+        || error.contains("is not contained in the render target")
+}
 
 /// What went wrong behind our back: wgpu reports some errors by callback.
 #[derive(Debug, Default)]
@@ -180,8 +184,8 @@ fn watch(device: &wgpu::Device, trouble: &Arc<Mutex<Trouble>>) {
         let mut trouble = errors.lock().unwrap_or_else(PoisonError::into_inner);
         match error {
             wgpu::Error::OutOfMemory { source } => trouble.memory.get_or_insert(source.to_string()),
-            // A window's surface was to be set up anew while another thread handed in work: the next frame tries again.
-            other if other.to_string().contains(SURFACE_BUSY) => return,
+            // A frame of a window is lost; the next one tries again.
+            other if is_of_a_stale_surface(&other.to_string()) => return,
             other => trouble.refused.get_or_insert(other.to_string()),
         };
     }));

@@ -151,6 +151,7 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     let mut shell = Shell {
         inner,
         gpu: Arc::clone(&gpu),
+        resized: None,
     };
     events.run_app(&mut shell).map_err(no_display)?;
     drop(shell);

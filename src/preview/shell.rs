@@ -2,6 +2,7 @@
 //! changes its size.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use eframe::{EframeWinitApplication, UserEvent};
 use winit::application::ApplicationHandler;
@@ -15,7 +16,12 @@ use crate::gpu::device::Gpu;
 pub(super) struct Shell<'a> {
     pub(super) inner: EframeWinitApplication<'a>,
     pub(super) gpu: Arc<Gpu>,
+    /// When the size changed last.
+    pub(super) resized: Option<Instant>,
 }
+
+/// So long after a change of the size frames may set the surface up anew.
+const SETTLES: Duration = Duration::from_secs(1);
 
 impl Shell<'_> {
     /// Lets the others go on: not only if an event told that the size changes, since a surface that turns out to be outdated
@@ -32,6 +38,12 @@ impl ApplicationHandler<UserEvent> for Shell<'_> {
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. }
         );
         if resizes {
+            self.resized = Some(Instant::now());
+        }
+        // A surface that is not quite right any more is set up anew in one of the next frames.
+        let settles = matches!(event, WindowEvent::RedrawRequested)
+            && self.resized.is_some_and(|when| when.elapsed() < SETTLES);
+        if resizes || settles {
             self.gpu.turn.close();
         }
         self.inner.window_event(active, window, event);
