@@ -8,7 +8,7 @@ use std::{env, fs};
 
 fn main() {
     println!("cargo:rerun-if-changed=shaders/procedural");
-    println!("cargo:rerun-if-changed=src/cpu/procedural");
+    println!("cargo:rerun-if-changed=src/procedural");
     let root = env::var("CARGO_MANIFEST_DIR").expect("cargo sets it");
     let out = env::var("OUT_DIR").expect("cargo sets it");
     let table = procedural_table(Path::new(&root));
@@ -44,10 +44,10 @@ fn procedural_table(root: &Path) -> String {
         if let Some(other) = shaders.insert(number, stem.to_owned()) {
             panic!("{name} and {other}.wgsl have the same number");
         }
-        let twin = root.join(format!("src/cpu/procedural/{stem}.rs"));
+        let twin = root.join(format!("src/procedural/{stem}.rs"));
         assert!(
             twin.is_file(),
-            "shaders/procedural/{name} has no CPU twin src/cpu/procedural/{stem}.rs"
+            "shaders/procedural/{name} has no second version in Rust, src/procedural/{stem}.rs"
         );
     }
     let mut source = String::new();
@@ -59,7 +59,7 @@ fn procedural_table(root: &Path) -> String {
             );
         }
         for stem in shaders.values() {
-            let twin = root.join(format!("src/cpu/procedural/{stem}.rs"));
+            let twin = root.join(format!("src/procedural/{stem}.rs"));
             writeln!(
                 source,
                 "#[path = {:?}]\nmod {stem};",
@@ -69,26 +69,31 @@ fn procedural_table(root: &Path) -> String {
         }
         let upper = family.to_uppercase();
         let point = if *family == "pplane" {
-            "PlanePoint"
+            "impl PlanePoint<R>"
         } else {
-            "SpherePoint"
+            "SpherePoint<R>"
         };
         writeln!(
             source,
             "/// The number of {family} shaders.\npub const {upper}_SHADERS: u32 = {};\n\
-             /// Name and WGSL of each {family} shader, by number.\npub const {upper}_WGSL: &[(&str, &str)] = &[",
+             /// Each {family} shader, by number.\nconst {upper}: &[Shader] = &[",
             shaders.len()
         )
         .expect("a string grows");
         for stem in shaders.values() {
             let file = folder.join(format!("{stem}.wgsl")).display().to_string();
-            writeln!(source, "    ({stem:?}, include_str!({file:?})),").expect("a string grows");
+            writeln!(
+                source,
+                "    Shader {{ name: {stem:?}, wgsl: include_str!({file:?}), brightest: {stem}::brightest }},"
+            )
+            .expect("a string grows");
         }
         writeln!(
             source,
             "];\n/// The colour that {family} shader `shader` gives; the parser has checked the number.\n\
+             ///\n/// # Errors\n/// If the number type cannot decide something.\n\
              #[allow(clippy::match_single_binding, reason = \"a family may have one shader\")]\n\
-             pub fn {family}<R: Real>(shader: u32, at: &{point}<R>) -> Result<V3<R>, Undecided> {{\n    match shader {{"
+             pub fn {family}<R: Real>(shader: u32, at: &{point}) -> Result<V3<R>, Undecided> {{\n    match shader {{"
         )
         .expect("a string grows");
         let last = shaders.len() - 1;

@@ -1,14 +1,6 @@
 // The tree over many spheres: which of them a ray may hit. Twin: src/cpu/bvh.rs.
 
-struct BvhNode {
-    // The box, padded outward on the host.
-    min: vec3f,
-    // A leaf's first sphere, or an inner node's first child; the second is its neighbour.
-    first: u32,
-    max: vec3f,
-    // Spheres of a leaf; 0 for an inner node.
-    count: u32,
-}
+//#insert struct BvhNode
 
 // Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir by
 // components. The roundings of the test are relative, a few ulp; the slack covers them.

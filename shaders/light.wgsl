@@ -1,17 +1,6 @@
 // What a light brings to a hit point. Twin: src/cpu/light.rs.
 
-struct Light {
-    // From the viewpoint.
-    location: vec3f,
-    // Cosine of a spotlight's half angle; below −1 for any other light.
-    cosine: f32,
-    emissivity: vec3f,
-    // |location|
-    size: f32,
-    // A spotlight's axis.
-    axis: vec3f,
-    unused: u32,
-}
+//#insert struct Light
 
 // The share of a light that reaches the point.
 struct Shadow {
@@ -164,7 +153,7 @@ fn light_term(number: u32, point: Point, seen: Beam, diffuse: vec3f) -> Shade {
     if !blocked.open {
         return shade;
     }
-    let full = diffuse * light.emissivity * blocked.share * (inverse * UNIT);
+    let full = diffuse * light.emissivity * blocked.share * (inverse * CAMERA_UNIT);
     shade.color = full * max(c, 0.0);
     shade.error = full * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
 //#if glint

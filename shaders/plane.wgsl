@@ -4,19 +4,7 @@
 // seen to take twice as long for each of them that stands in a loop (docs/BENCH.md).
 
 //#if plane
-struct Plane {
-    // 1/s = inverse.x·X + inverse.y·Y + inverse.z, (X, Y) the pixel from CAMERA_ANCHOR.
-    inverse: vec3f,
-    object: u32,
-    // Hit only where front.x·X + front.y·Y + front.z ≥ 0: the rule H.z ≤ τ.
-    front: vec3f,
-    // Number of the surface, if it is shared with another object that a primary ray can hit; else 0.
-    group: u32,
-    // Bounds of the errors of 1/s and of the front's form, on the whole screen.
-    inverse_error: f32,
-    front_error: f32,
-    unused: vec2f,
-}
+//#insert struct Plane
 
 // The plane as a primary ray meets it.
 fn plane_hits(plane: Plane, ray: Ray) -> Candidate {
@@ -41,25 +29,7 @@ fn plane_hits(plane: Plane, ray: Ray) -> Candidate {
 //#end
 //#if rectangle
 
-struct Rectangle {
-    // As in a Plane.
-    inverse: vec3f,
-    object: u32,
-    front: vec3f,
-    group: u32,
-    // The hit is inside where all of these are ≥ 0, as forms over (X, Y, 1): p_i/s and (d_i − p_i)/s, p the coordinates on
-    // the rectangle and d its sides, each up to a positive factor.
-    side_0: vec3f,
-    inverse_error: f32,
-    side_1: vec3f,
-    front_error: f32,
-    side_2: vec3f,
-    unused_0: u32,
-    side_3: vec3f,
-    unused_1: u32,
-    // Bounds of the errors of the four forms.
-    side_errors: vec4f,
-}
+//#insert struct Rectangle
 
 // The rectangle as a primary ray meets it.
 fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> Candidate {
@@ -88,32 +58,7 @@ fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> Candidate {
 //#end
 //#if lit
 
-// A plane or rectangle for rays from anywhere; positions are from the viewpoint.
-struct WorldPlane {
-    // Of unit length; normal·P = offset on the plane.
-    normal: vec3f,
-    offset: f32,
-    // A hit point P becomes P·keep + own: on a plane perpendicular to an axis that coordinate is exact.
-    keep: vec3f,
-    group: u32,
-    own: vec3f,
-    object: u32,
-    // p_i = row_i·P − origin_i, the coordinates on the rectangle; the sides' lengths.
-    row_0: vec3f,
-    origin_0: f32,
-    row_1: vec3f,
-    origin_1: f32,
-    lengths: vec2f,
-    // Bit i: light i lies in the plane.
-    level: u32,
-    // 1 for a rectangle.
-    bounded: u32,
-    // Hit only up to this z; huge where all of the plane is.
-    highest: f32,
-    // What of the error of p_i does not come from P.
-    sides_error: f32,
-    unused: vec2f,
-}
+//#insert struct WorldPlane
 
 // The plane as a ray from anywhere meets it.
 fn plane_hits_from(plane: WorldPlane, beam: Beam, range: Range) -> Meeting {

@@ -62,7 +62,7 @@ const SPHERE_BIT = 0x80000000u;
 fn complete(point: ptr<function, Point>) {
     let object = objects[(*point).object];
     (*point).group = object.group;
-//#if lit_plane
+//#if world_planes
     if (object.place & SPHERE_BIT) == 0u {
         let plane = world_planes[object.place];
         (*point).normal = plane.normal;

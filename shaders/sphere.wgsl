@@ -8,23 +8,7 @@ fn root_error(square: f32, error: f32, inverse_root: f32) -> f32 {
 //#end
 
 //#if sphere
-// A sphere as primary rays see it, over the pixel (X, Y) from its anchor: 1/s = gain·(along + √disc) for the nearer hit,
-// along linear and disc quadratic. A pixel next to the middle of the outline is the anchor where the outline is an ellipse.
-struct Sphere {
-    // e·W over (X, Y, 1), e the unit vector from the viewpoint to the center.
-    along: vec3f,
-    gain: f32,
-    // (r² − |perpendicular|²)·W·W/|C|², the coefficients of X², XY, Y² …
-    square: vec3f,
-    object: u32,
-    // … and of X, Y, 1.
-    affine: vec3f,
-    along_error: f32,
-    anchor: vec2i,
-    disc_error: f32,
-    // 1/s is no larger; where spheres are many.
-    most: f32,
-}
+//#insert struct Sphere
 
 // Above 0 where the ray through the pixel `at`, from the sphere's anchor, meets the sphere.
 fn sphere_disc(sphere: Sphere, at: vec2f) -> f32 {
@@ -64,26 +48,9 @@ fn sphere_at(index: u32) -> Sphere {
 //#end
 //#if sphere_point
 
-// Where a sphere that a primary ray met is met: (H − C)/(r·s) = forms·(X, Y, 1) − center·√disc.
-struct SphereHit {
-    form_x: vec3f,
-    // Bound of the errors of the forms, as a vector.
-    form_error: f32,
-    form_y: vec3f,
-    // gain·|C|/r
-    center_size: f32,
-    form_z: vec3f,
-    unused_0: u32,
-    // gain·C/r
-    center: vec3f,
-    unused_1: u32,
-}
+//#insert struct SphereHit
 
-// What `spheres` holds where hits are looked at: in one buffer, as some drivers allow only ten.
-struct SphereAndHit {
-    sphere: Sphere,
-    hit: SphereHit,
-}
+//#insert struct SphereAndHit
 
 // The unit normal at the hit, outward; in its fourth component the bound of its error.
 fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
@@ -108,21 +75,7 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
 //#end
 //#if lit
 
-// A sphere for rays from anywhere; its center is from the viewpoint.
-struct WorldSphere {
-    center: vec3f,
-    radius: f32,
-    group: u32,
-    object: u32,
-    // Bit i: light i lies on the sphere.
-    level: u32,
-    // |C|
-    size: f32,
-    inverse_radius: f32,
-    unused_0: u32,
-    unused_1: u32,
-    unused_2: u32,
-}
+//#insert struct WorldSphere
 
 // How a ray passes a sphere.
 struct Passage {

@@ -1,38 +1,11 @@
 // The reflectivity of an object at a hit. Twin: src/cpu/surface.rs.
 
 //#if lit
-struct Object {
-    // Index of the material.
-    material: u32,
-    // What modulates it: KIND_… in the low byte, the index of its record above.
-    kind: u32,
-    // Number of the surface that the object is or is part of.
-    group: u32,
-    // Index into `world_planes`, or into `world_spheres` with the highest bit set.
-    place: u32,
-}
+//#insert struct LitObject
 
-struct Material {
-    ambient: vec3f,
-    transparency: f32,
-    diffuse: vec3f,
-    // 0 where there is no glint.
-    shininess: f32,
-    specular: vec3f,
-    // The shininess if it is a whole number from 1 to 1023, else 0.
-    power: u32,
-    // What tints light that goes through.
-    tint: vec3f,
-    // 1 − transparency.
-    kept: f32,
-}
+//#insert struct Material
 //#else
-struct Object {
-    // The material's ambient reflectivity.
-    ambient: vec3f,
-    // What modulates it: KIND_… in the low byte, the index of its record above.
-    kind: u32,
-}
+//#insert struct Object
 //#end
 
 // A hit point.
@@ -137,21 +110,7 @@ fn told_odd(word: u32) -> vec3f {
 //#end
 //#if tiled
 
-struct Tiled {
-    // Tile indices along both directions: floor(row_i·P + fraction_i), up to `parity`.
-    row_0: vec3f,
-    fraction_0: f32,
-    row_1: vec3f,
-    fraction_1: f32,
-    // The other material's ambient reflectivity, and its index.
-    altmaterial: vec3f,
-    altindex: u32,
-    // The host's parities together, 0 to 3: tiles whose sum is odd have the other material.
-    parity: f32,
-    // |row_0| and |row_1|, and what of the indices' errors does not come from the position.
-    spread: vec2f,
-    errors: vec2f,
-}
+//#insert struct TiledPlane
 
 // Whether a tile is of the plane's own material.
 fn tplane_foreground(plane: Tiled, point: Point) -> bool {
@@ -173,19 +132,7 @@ fn tplane_foreground(plane: Tiled, point: Point) -> bool {
 //#end
 //#if pplane
 
-struct Pplane {
-    // The indices floor(2·H + 1000): floor(P·per_unit + fraction), up to `parity` (0 or 1 each).
-    per_unit: vec3f,
-    // What of the indices' errors does not come from the position.
-    index_error: f32,
-    fraction: vec3f,
-    // The same for the components of H − point.
-    from_point_error: f32,
-    parity: vec3f,
-    unused: u32,
-    // The components x and y of H − point: P·from_point.xy − from_point.zw.
-    from_point: vec4f,
-}
+//#insert struct ProceduralPlane
 
 // What a procedural plane's shader is told about the hit.
 struct PlanePoint {
@@ -229,21 +176,7 @@ fn pplane_from_point(at: PlanePoint) -> vec3f {
 //#end
 //#if textured
 
-struct Texplane {
-    // Texel column and row: floor(row_i·P − origin_i).
-    row_0: vec3f,
-    origin_0: f32,
-    row_1: vec3f,
-    origin_1: f32,
-    // Columns and rows of the texture, and its first texel in `texels`.
-    size: vec2u,
-    first: u32,
-    // 1 where the picture repeats, 0 where it is stretched.
-    repeats: u32,
-    // |row_0| and |row_1|, and what of the index's error does not come from the position.
-    spread: vec2f,
-    errors: vec2f,
-}
+//#insert struct Texplane
 
 // The texel at a point of a texplane, each channel byte/256.
 fn texel(plane: Texplane, point: Point) -> vec3f {
@@ -357,18 +290,7 @@ fn getamb(point: Point) -> Shade {
 //#if modulated
     let record = object.kind >> 8u;
     switch object.kind & 255u {
-//#if tiled_ambient
-        case KIND_TILED: {
-            let plane = tiled_planes[record];
-            shade.color = select(plane.altmaterial, shade.color, tplane_foreground(plane, point));
-        }
-//#end
-//#if textured
-        case KIND_TEXTURED: {
-            shade.color *= texel(texplanes[record], point);
-        }
-//#end
-//#insert procedural_cases
+//#insert ambient_cases
         default: {}
     }
 //#end

@@ -7,7 +7,7 @@
 //!                                             │
 //!                                          prepare ─► Prepared (what depends on the scene alone, exact, then rounded)
 //!                                             │
-//!            gpu::features ─ gpu::compose ─ gpu::pack ─► gpu::device: dispatch ── sure pixels ─┐
+//!            shader::feature_set ─ shader::compose ─ shader::pack ─► gpu::device: dispatch ── sure pixels ─┐
 //!                                             │                │ doubtful ones                  ├─► render: bands ─► image
 //!                                            cpu: the same tracer in Rust ◄── certify ──────────┘       PPM / PNG / EXR
 //! ```
@@ -30,8 +30,10 @@ pub mod prepare;
 #[cfg(feature = "preview")]
 pub mod preview;
 pub mod probe;
+pub mod procedural;
 pub mod real;
 pub mod render;
 pub mod scene;
 pub mod settings;
+pub mod shader;
 pub mod vector;

@@ -6,10 +6,10 @@ mod common;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use plumb::bench::{first_hit, textbook};
-use plumb::gpu::device::SOFTWARE_LANES;
-use plumb::gpu::pack::Packed;
 use plumb::gpu::single;
 use plumb::render::{Precision, Settings};
+use plumb::shader::feature_set::SOFTWARE_LANES;
+use plumb::shader::pack::Packed;
 
 use common::{good_scenes, read};
 

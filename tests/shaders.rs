@@ -8,15 +8,16 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use plumb::cpu::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
-use plumb::gpu::compose::compose;
-use plumb::gpu::features::FeatureSet;
-use plumb::gpu::pack::Packed;
+use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, Settings, Spread};
 use plumb::scene::{
     Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
     TextureMode,
 };
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature::Feature;
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::pack::Packed;
 
 /// Something that a scene may have and a shader then needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -243,7 +244,7 @@ fn materials() -> Vec<Material> {
 
 fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
     let (packed, features) = packed(chosen);
-    (compose(&packed, &features), features)
+    (compose(&packed, &features, Entry::Picture), features)
 }
 
 fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
@@ -355,24 +356,21 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
         spread_features,
         features,
     ];
-    // Together they have every name that the files ask for, so that none is left out above.
-    let named: BTreeSet<&str> = every.iter().flat_map(FeatureSet::names).collect();
-    for name in [
-        "front",
-        "stack",
-        "any_hit",
-        "world_loop",
-        "bvh",
-        "tiles",
-        "course",
-        "sphere_point",
-        "sphere_beyond",
-        "groups",
-        "certified",
-        "level",
-        "tables",
-    ] {
-        assert!(named.contains(name) || name == "any_hit", "{name}");
+    // Together they have every feature, so that none is left out above.
+    let found: BTreeSet<Feature> = every.iter().flat_map(FeatureSet::features).collect();
+    for feature in Feature::ALL {
+        // Only fast pictures have these, or scenes without mirrors, glass or lights.
+        let elsewhere = [
+            Feature::AnyHit,
+            Feature::Moving,
+            Feature::Values,
+            Feature::Quad,
+            Feature::SphereLoop,
+        ];
+        assert!(
+            found.contains(feature) || elsewhere.contains(feature),
+            "{feature:?}"
+        );
     }
 }
 
@@ -393,9 +391,12 @@ fn every_scene_of_ours_is_valid() {
             };
             let packed = Packed::new(&common::read(&path), &settings);
             let features = FeatureSet::new(&packed, &settings, 8);
-            assert_valid(&compose(&packed, &features), &path.display().to_string());
+            assert_valid(
+                &compose(&packed, &features, Entry::Picture),
+                &path.display().to_string(),
+            );
             if precision == Precision::Fast {
-                let moving = compose(&packed, &features.while_moving());
+                let moving = compose(&packed, &features.while_moving(), Entry::Picture);
                 assert_valid(&moving, &format!("{} moving", path.display()));
             }
         }
@@ -419,8 +420,8 @@ fn another_viewpoint_is_another_shader_only_where_the_camera_is_in_the_text() {
             let packed = Packed::new(scene, &settings);
             let features = FeatureSet::new(&packed, &settings, 8);
             [
-                compose(&packed, &features),
-                compose(&packed, &features.while_moving()),
+                compose(&packed, &features, Entry::Picture),
+                compose(&packed, &features.while_moving(), Entry::Picture),
             ]
         };
         let [text, moving] = texts(&scene);
@@ -507,7 +508,6 @@ fn what_is_not_used_is_not_there() {
         ("through.weight", &|i| i == Glass),
         ("power(", &|i| i == Glint),
         ("partial", &|_| false),
-        ("room", &|_| false),
         ("summed", &|_| false),
         ("jitter_hash", &|_| false),
         ("offsets[", &|_| false),
@@ -531,7 +531,7 @@ fn what_is_not_used_is_not_there() {
     let course = composed(&[Plane, CourseSamples]).0;
     assert!(course.contains("offsets[") && !course.contains("jitter_hash"));
     // Samples are in doubt one by one where pixels are certified.
-    assert!(course.contains("pixels.partials") && course.contains("room: u32"));
+    assert!(course.contains("pixels.partials"));
     // They take no buffer of their own: SwiftShader allows ten, and scenes of ours have as many.
     let buffers = |chosen: &[Ingredient]| composed(chosen).0.matches("var<storage").count();
     assert_eq!(buffers(&[Plane, Samples]), buffers(&[Plane]));
@@ -557,19 +557,18 @@ fn a_broken_shader_is_noticed() {
 mod layout {
     //! Offsets and sizes of the packed records are those that naga computes for the WGSL structs.
 
-    use std::mem::offset_of;
-
-    use plumb::gpu::pack;
+    use plumb::shader::binding::BINDINGS;
+    use plumb::shader::record::{Layout, Record as _};
+    use plumb::shader::records::{CameraNumbers, Job, LAYOUTS};
 
     use super::*;
 
     /// Struct members by name with their offsets, and the array stride or span of the struct.
-    fn wgsl_struct(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    fn wgsl_struct(module: &naga::Module, name: &str) -> Option<(Vec<(String, usize)>, usize)> {
         let (_, ty) = module
             .types
             .iter()
-            .find(|(_, ty)| ty.name.as_deref() == Some(name))
-            .unwrap_or_else(|| panic!("no struct {name}"));
+            .find(|(_, ty)| ty.name.as_deref() == Some(name))?;
         let naga::TypeInner::Struct { members, span } = &ty.inner else {
             panic!("{name} is no struct")
         };
@@ -577,220 +576,114 @@ mod layout {
             .iter()
             .map(|m| (m.name.clone().unwrap(), m.offset as usize))
             .collect();
-        (offsets, *span as usize)
+        Some((offsets, *span as usize))
     }
 
-    macro_rules! same_layout {
-        ($module:expr, $wgsl:literal, $rust:ty, $($field:ident),+) => {{
-            let (members, span) = wgsl_struct(&$module, $wgsl);
-            let ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),+];
-            assert_eq!(members, ours, "{}", $wgsl);
-            assert_eq!(span, size_of::<$rust>(), "{}", $wgsl);
-        }};
+    /// Modules that have all the structs.
+    fn modules() -> Vec<naga::Module> {
+        let all = ingredients();
+        let dark: Vec<_> = all
+            .iter()
+            .copied()
+            .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
+            .collect();
+        let (packed, features) = packed(&[Plane, Lamp, Fast]);
+        let moving = compose(&packed, &features.while_moving(), Entry::Picture);
+        [
+            composed(&all).0,
+            composed(&dark).0,
+            composed(&[Plane, Samples]).0,
+            composed(&[SmallSphere, SmallPsphere(0), ManyPlanes]).0,
+            moving,
+        ]
+        .iter()
+        .map(|wgsl| assert_valid(wgsl, "structs"))
+        .collect()
+    }
+
+    fn ours(layout: &Layout) -> (Vec<(String, usize)>, usize) {
+        let members = layout
+            .members()
+            .map(|field| (field.name.to_owned(), field.offset));
+        (members.collect(), layout.size)
     }
 
     #[test]
     fn records_are_laid_out_as_naga_says() {
-        let all = ingredients();
-        let module = assert_valid(&composed(&all).0, "all");
-        let dark: Vec<_> = all
-            .into_iter()
-            .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
-            .collect();
-        let dark = assert_valid(&composed(&dark).0, "all without lights");
-        let sampled = assert_valid(&composed(&[Plane, Samples]).0, "samples");
-        same_layout!(sampled, "Job", pack::Job, first, size, zero, room);
-        // Without samples the last word is not read.
-        assert_eq!(wgsl_struct(&module, "Job").1, size_of::<pack::Job>());
-        same_layout!(dark, "Object", pack::Object, ambient, kind);
-        same_layout!(
-            module,
-            "Object",
-            pack::LitObject,
-            material,
-            kind,
-            group,
-            place
-        );
-        same_layout!(
-            dark,
-            "Plane",
-            pack::Plane,
-            inverse,
-            object,
-            front,
-            group,
-            inverse_error,
-            front_error,
-            unused
-        );
-        same_layout!(
-            dark,
-            "Rectangle",
-            pack::Rectangle,
-            inverse,
-            object,
-            front,
-            group,
-            side_0,
-            inverse_error,
-            side_1,
-            front_error,
-            side_2,
-            unused_0,
-            side_3,
-            unused_1,
-            side_errors
-        );
-        same_layout!(
-            dark,
-            "Sphere",
-            pack::Sphere,
-            along,
-            gain,
-            square,
-            object,
-            affine,
-            along_error,
-            anchor,
-            disc_error,
-            most
-        );
-        same_layout!(
-            dark,
-            "SphereHit",
-            pack::SphereHit,
-            form_x,
-            form_error,
-            form_y,
-            center_size,
-            form_z,
-            unused_0,
-            center,
-            unused_1
-        );
-        same_layout!(module, "BvhNode", pack::BvhNode, min, first, max, count);
-        same_layout!(
-            module,
-            "Tiled",
-            pack::TiledPlane,
-            row_0,
-            fraction_0,
-            row_1,
-            fraction_1,
-            altmaterial,
-            altindex,
-            parity,
-            spread,
-            errors
-        );
-        same_layout!(
-            module,
-            "Pplane",
-            pack::ProceduralPlane,
-            per_unit,
-            index_error,
-            fraction,
-            from_point_error,
-            parity,
-            unused,
-            from_point
-        );
-        same_layout!(
-            module,
-            "Texplane",
-            pack::Texplane,
-            row_0,
-            origin_0,
-            row_1,
-            origin_1,
-            size,
-            first,
-            repeats,
-            spread,
-            errors
-        );
-        same_layout!(
-            module,
-            "Material",
-            pack::Material,
-            ambient,
-            transparency,
-            diffuse,
-            shininess,
-            specular,
-            power,
-            tint,
-            kept
-        );
-        same_layout!(
-            module,
-            "Light",
-            pack::Light,
-            location,
-            cosine,
-            emissivity,
-            size,
-            axis,
-            unused
-        );
-        same_layout!(
-            module,
-            "WorldPlane",
-            pack::WorldPlane,
-            normal,
-            offset,
-            keep,
-            group,
-            own,
-            object,
-            row_0,
-            origin_0,
-            row_1,
-            origin_1,
-            lengths,
-            level,
-            bounded,
-            highest,
-            sides_error,
-            unused
-        );
-        same_layout!(
-            module,
-            "WorldSphere",
-            pack::WorldSphere,
-            center,
-            radius,
-            group,
-            object,
-            level,
-            size,
-            inverse_radius,
-            unused_0,
-            unused_1,
-            unused_2
-        );
+        let modules = modules();
+        for layout in LAYOUTS {
+            // The camera is no struct of its own: see below.
+            if layout.name == "CameraNumbers" {
+                continue;
+            }
+            let found: Vec<_> = modules
+                .iter()
+                .filter_map(|module| wgsl_struct(module, layout.wgsl))
+                .collect();
+            assert!(!found.is_empty(), "no struct {}", layout.wgsl);
+            // Two records may have the same name in the shaders of different scenes.
+            let named: Vec<_> = LAYOUTS
+                .iter()
+                .filter(|other| other.wgsl == layout.wgsl)
+                .map(ours)
+                .collect();
+            assert!(found.contains(&ours(layout)), "{}: {found:?}", layout.name);
+            for found in found
+                .iter()
+                .filter(|(members, _)| members.len() == ours(layout).0.len())
+            {
+                assert!(named.contains(found), "{}: {found:?}", layout.wgsl);
+            }
+        }
+    }
+
+    /// What the table says of bindings is what the shaders declare.
+    #[test]
+    fn bindings_are_as_the_table_says() {
+        let mut seen = BTreeSet::new();
+        for ingredient in ingredients() {
+            let (wgsl, set) = composed(&[ingredient, Plane, Samples, Pplane(0)]);
+            let features = set.features();
+            let module = assert_valid(&wgsl, "bindings");
+            let declared: BTreeSet<(u32, String)> = module
+                .global_variables
+                .iter()
+                .filter_map(|(_, variable)| {
+                    let binding = variable.binding.as_ref()?;
+                    Some((binding.binding, variable.name.clone()?))
+                })
+                .collect();
+            let table: Vec<(u32, String)> = BINDINGS
+                .iter()
+                .filter(|binding| (binding.holds)(&features))
+                .map(|binding| (binding.number, binding.name.to_owned()))
+                .collect();
+            // No number twice.
+            assert_eq!(table.len(), declared.len(), "{ingredient:?}: {table:?}");
+            assert_eq!(declared, table.into_iter().collect(), "{ingredient:?}");
+            seen.extend(declared);
+        }
+        for binding in BINDINGS {
+            let lit_alone = [6, 7, 12, 13, 14, 15].contains(&binding.number);
+            assert!(
+                lit_alone || seen.contains(&(binding.number, binding.name.to_owned())),
+                "{}",
+                binding.name
+            );
+        }
     }
 
     #[test]
     fn a_camera_that_moves_stands_behind_the_job() {
         let (packed, features) = packed(&[Plane, Lamp, Fast]);
-        let wgsl = compose(&packed, &features.while_moving());
-        let (members, span) = wgsl_struct(&assert_valid(&wgsl, "moving"), "Job");
-        let job = size_of::<pack::Job>();
-        let behind = |offset: usize| job + offset;
-        let ours = [
-            ("camera_anchor", offset_of!(pack::CameraNumbers, anchor)),
-            ("camera_step", offset_of!(pack::CameraNumbers, step)),
-            ("camera_offset", offset_of!(pack::CameraNumbers, offset)),
-            ("camera_distance", offset_of!(pack::CameraNumbers, distance)),
-            ("camera_gain", offset_of!(pack::CameraNumbers, gain)),
-            ("unit", offset_of!(pack::CameraNumbers, unit)),
-            ("camera_unused", offset_of!(pack::CameraNumbers, unused)),
-        ]
-        .map(|(name, offset)| (name.to_owned(), behind(offset)));
-        assert_eq!(members[4..], ours);
-        assert_eq!(span, job + size_of::<pack::CameraNumbers>());
+        let wgsl = compose(&packed, &features.while_moving(), Entry::Picture);
+        let (members, span) = wgsl_struct(&assert_valid(&wgsl, "moving"), "Job").unwrap();
+        let (job, camera) = (Job::LAYOUT, CameraNumbers::LAYOUT);
+        let behind = camera
+            .members()
+            .map(|field| (format!("camera_{}", field.name), job.size + field.offset));
+        assert_eq!(members[4..], behind.collect::<Vec<_>>());
+        assert_eq!(span, job.size + camera.size);
     }
 
     #[test]
@@ -800,7 +693,11 @@ mod layout {
             "    extra: u32,\n    inverse: vec3f,\n",
         );
         let module = naga::front::wgsl::parse_str(&wgsl).unwrap();
-        let (members, _) = wgsl_struct(&module, "Plane");
-        assert_ne!(members[1].1, offset_of!(pack::Plane, inverse));
+        let found = wgsl_struct(&module, "Plane").unwrap();
+        let plane = LAYOUTS
+            .iter()
+            .find(|layout| layout.name == "Plane")
+            .unwrap();
+        assert_ne!(found, ours(plane));
     }
 }

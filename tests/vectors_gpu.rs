@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DVec2, DVec3};
-use plumb::gpu::compose::compose;
 use plumb::gpu::device::{self, Gpu};
-use plumb::gpu::features::FeatureSet;
-use plumb::gpu::pack::Packed;
 use plumb::prepare;
 use plumb::render::Settings;
 use plumb::scene::{Camera, Material, Object, Scene, Shape, Surface};
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::pack::Packed;
 use wgpu::util::DeviceExt as _;
 
 /// The notes' operations in WGSL. What WGSL has itself (dot, cross, length, +, −, scalar ·, matrix ·) is used as it is.
@@ -381,7 +381,11 @@ mod pixel_to_ray {
     /// The shader that plumb composes for the scene, and a second entry point that calls its camera.
     fn composed(scene: &Scene) -> String {
         let packed = Packed::new(scene, &Settings::default());
-        let mut wgsl = compose(&packed, &FeatureSet::new(&packed, &Settings::default(), 8));
+        let mut wgsl = compose(
+            &packed,
+            &FeatureSet::new(&packed, &Settings::default(), 8),
+            Entry::Picture,
+        );
         wgsl += "
 @group(0) @binding(100) var<storage, read> test_pixels: array<vec2i>;
 @group(0) @binding(101) var<storage, read_write> test_rays: array<vec4f>;

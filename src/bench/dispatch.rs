@@ -9,9 +9,9 @@ use std::time::Instant;
 use bytemuck::Zeroable;
 
 use crate::gpu::GpuError;
-use crate::gpu::compose::WORKGROUP;
+use crate::shader::compose::WORKGROUP;
 use crate::gpu::device::Gpu;
-use crate::gpu::pack::Job;
+use crate::shader::records::Job;
 
 /// Pixels of the first dispatch, whose speed is not known yet.
 const FIRST: u64 = 1 << 16;

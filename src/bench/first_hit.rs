@@ -1,19 +1,17 @@
 //! What primary rays meet on the GPU, and how far away: the shaders of pictures, with another entry point.
 //!
-//! Every function of theirs is as it is where a picture is rendered; nothing in `shaders/` is there for this.
+//! Every function of theirs is as it is where a picture is rendered.
 
 use super::dispatch::Runner;
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
-use crate::gpu::compose::compose;
+use crate::shader::compose::{Entry, compose};
 use crate::gpu::device::Gpu;
-use crate::gpu::features::FeatureSet;
-use crate::gpu::pack::Packed;
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::prepare::exact::two_to;
 use crate::settings::Settings;
-
-const FIRST_HIT: &str = include_str!("first_hit.wgsl");
 
 /// The shader of a picture with the other entry point, and its features; none where there is nothing to hit.
 #[must_use]
@@ -24,9 +22,8 @@ pub fn wgsl(packed: &Packed, settings: &Settings, lanes: u32) -> Option<(String,
     }
     // Four words a pixel; the bounds of certified pixels stay.
     features.values = true;
-    let wgsl = compose(packed, &features);
-    let before = wgsl.split("@compute").next().unwrap_or_default();
-    Some(([before, FIRST_HIT].concat(), features))
+    let wgsl = compose(packed, &features, Entry::FirstHit);
+    Some((wgsl, features))
 }
 
 /// What the pixels of these rows see, row by row, from the left.

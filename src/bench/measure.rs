@@ -16,10 +16,11 @@ use crate::certify::Stage;
 use crate::cpu::camera::camera_setpix;
 use crate::cpu::trace::{Unwatched, ray_trace};
 use crate::gpu::device::Gpu;
-use crate::gpu::features::FeatureSet;
-use crate::gpu::pack::Packed;
+use crate::shader::compose::{Entry, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
-use crate::gpu::{GpuError, bands, compose};
+use crate::gpu::{GpuError, bands};
 use crate::image::Picture;
 use crate::jitter::Jitter;
 use crate::prepare::Prepared;
@@ -210,7 +211,7 @@ impl Subject<'_> {
     /// The dispatches alone, of a shader that is compiled once and has run before.
     fn kernel(&self, gpu: &Gpu, packed: &Packed, settings: &Settings) -> Result<Times, Unmeasured> {
         let features = FeatureSet::new(packed, settings, gpu.lanes);
-        let wgsl = compose::compose(packed, &features);
+        let wgsl = compose(packed, &features, Entry::Picture);
         let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
         let [width, height] = self.scene.camera.pixeldim;
         let frame = bands::Frame {

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
-use plumb::gpu::describe;
 use plumb::scene::list_model;
+use plumb::shader::describe;
 
 use super::args::PictureOptions;
 use super::{Answer, say, source};

@@ -8,7 +8,6 @@ pub mod debug;
 pub mod light;
 pub mod pixel;
 pub mod plane;
-pub mod procedural;
 pub mod sphere;
 pub mod surface;
 pub mod trace;

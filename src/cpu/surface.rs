@@ -1,46 +1,32 @@
 //! Twin of `shaders/surface.wgsl`: the reflectivity of an object at a hit.
 
-use std::cmp::Ordering;
-
-use super::procedural;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::prepare::{Prepared, Surface};
+use crate::procedural::{self, PlanePoint, SpherePoint};
 use crate::real::{Real, Undecided, V3};
 
 /// What a procedural plane's shader is told about the hit.
-#[derive(Debug, Clone, Copy)]
-pub struct PlanePoint<'a, R> {
-    /// The hit point from the viewpoint, in units of 2^scale.
-    pub position: V3<R>,
-    /// The material's ambient reflectivity.
-    pub ambient: V3<R>,
-    /// What the host made ready.
-    pub plane: &'a Pplane<R>,
+struct PlaneHit<'a, R> {
+    position: V3<R>,
+    ambient: V3<R>,
+    plane: &'a Pplane<R>,
 }
 
-impl<R: Real> PlanePoint<'_, R> {
-    /// Parity of floor(2·H.x + 1000), floor(2·H.y + 1000) or floor(2·H.z + 1000).
-    pub fn odd(&self, axis: usize) -> Result<u32, Undecided> {
-        let p = [self.position.x, self.position.y, self.position.z][axis];
-        self.plane.index[axis].odd(p)
+impl<R: Real> PlanePoint<R> for PlaneHit<'_, R> {
+    fn ambient(&self) -> V3<R> {
+        self.ambient
     }
 
-    /// Components x and y of H − point, in world units.
-    pub fn from_point(&self) -> [R; 2] {
+    fn odd(&self, axis: usize) -> Result<u32, Undecided> {
+        self.plane.index[axis].odd(self.position.axis(axis))
+    }
+
+    fn from_point(&self) -> [R; 2] {
         [
             self.plane.from_point[0].at(self.position.x),
             self.plane.from_point[1].at(self.position.y),
         ]
     }
-}
-
-/// What a procedural sphere's shader is told about the hit.
-#[derive(Debug, Clone, Copy)]
-pub struct SpherePoint<R> {
-    /// H − center, in units of 2^scale.
-    pub from_center: V3<R>,
-    /// The material's ambient reflectivity.
-    pub ambient: V3<R>,
 }
 
 /// A hit point, with what its surface's looks depend on.
@@ -69,7 +55,7 @@ pub fn getamb<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<V3<R>, Unde
         Surface::Plain | Surface::Tiled(_) => Ok(ambient),
         Surface::Pplane(plane) => procedural::pplane(
             plane.shader,
-            &PlanePoint {
+            &PlaneHit {
                 position: at.position,
                 ambient,
                 plane,
@@ -138,36 +124,4 @@ fn texel<R: Real>(
     let first = 3 * (row * texels.width as usize + place[0]);
     let channel = |i: usize| R::exact(f64::from(texels.rgb[first + i]) / 256.0);
     Ok(V3::new(channel(0), channel(1), channel(2)))
-}
-
-/// (1 + cos 2θ, 1 + cos(2θ + 2π/3), 1 + cos(2θ + 4π/3)) with θ the angle of (x, y) from +x; θ = 0 at the origin.
-///
-/// By 1 + cos 2α = 2·cos²α: no acos, no cos, and never less than 0.
-pub fn color_wheel<R: Real>(x: R, y: R) -> Result<V3<R>, Undecided> {
-    // The larger component becomes 1, so that squares neither overflow nor vanish. Any that is not 0 would do: it is divided
-    // out again, its sign too.
-    let (larger, smaller) = if x.approx().abs() >= y.approx().abs() {
-        (x, y)
-    } else {
-        (y, x)
-    };
-    let larger = if larger.sign()? == Ordering::Equal {
-        smaller
-    } else {
-        larger
-    };
-    if larger.sign()? == Ordering::Equal {
-        return Ok(V3::new(R::exact(2.0), R::exact(0.5), R::exact(0.5)));
-    }
-    let half = R::exact(0.5);
-    let half_root_3 = R::exact(0.75).sqrt();
-    let (x, y) = (x / larger, y / larger);
-    let green = half * x - half_root_3 * y;
-    let blue = half * x + half_root_3 * y;
-    let scale = R::exact(2.0) / (x * x + y * y);
-    Ok(V3::new(
-        x * x * scale,
-        green * green * scale,
-        blue * blue * scale,
-    ))
 }

@@ -6,7 +6,6 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::GpuError;
-use super::compose::WORKGROUP;
 use super::selftest::{self, Outcome};
 use super::turn::Turn;
 
@@ -33,9 +32,6 @@ pub struct Gpu {
     pub turn: Turn,
     trouble: Arc<Mutex<Trouble>>,
 }
-
-/// Lanes of a software driver's vectors, 256 bits wide as a rule.
-pub const SOFTWARE_LANES: u32 = 8;
 
 /// Whether wgpu says that a window's surface could not be set up anew because the device did not come idle, or that a frame was
 /// drawn for another size than the surface has after that.

@@ -1,19 +1,12 @@
 //! The GPU: the only code that knows wgpu.
 //!
-//! In the order of the flow: [`pack`] rounds the prepared scene to flat f32 records, [`features`] says which of them there
-//! are, [`compose`] writes the WGSL for exactly those, [`device`] finds an adapter and opens it, [`pipeline`] compiles and
-//! binds, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`] tries out a device before it is trusted. [`canvas`] holds a picture that a
-//! window shows. [`describe`] prints each stage.
+//! [`device`] finds an adapter and opens it, [`pipeline`] compiles the shader that [`shader`](crate::shader) composed and
+//! binds the scene to it, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`] tries out a device
+//! before it is trusted. [`canvas`] holds a picture that a window shows, [`single`] asks for one pixel.
 
 pub mod bands;
-pub mod bounds;
 pub mod canvas;
-pub mod compose;
-pub mod describe;
 pub mod device;
-pub mod features;
-pub mod literal;
-pub mod pack;
 pub mod pipeline;
 pub mod selftest;
 pub mod single;

@@ -1,16 +1,18 @@
 //! A composed shader compiled, and the packed scene in buffers bound to it.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use bytemuck::{Pod, Zeroable as _};
 use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::device::Gpu;
-use super::features::{FeatureSet, QUAD};
-use super::pack::{CameraNumbers, LitObject, Object, Packed};
+use crate::shader::binding::{BINDINGS, JOB, OFFSETS, PIXELS};
+use crate::shader::feature::{Feature, Features};
+use crate::shader::feature_set::{FeatureSet, QUAD};
+use crate::shader::pack::Packed;
+use crate::shader::records::CameraNumbers;
 
 /// A shader ready to run on a scene.
 #[derive(Debug)]
@@ -33,28 +35,29 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Compiles `wgsl`, composed for `packed` with `features`, and uploads the scene.
+    /// Compiles `wgsl`, composed for `packed` with the features of `set`, and uploads the scene.
     pub fn new(
         gpu: &Gpu,
         packed: &Packed,
-        features: &FeatureSet,
+        set: &FeatureSet,
         wgsl: &str,
     ) -> Result<Self, GpuError> {
-        Self::with(gpu, packed, features, || gpu.compile(wgsl, "main"))
+        Self::with(gpu, packed, set, || gpu.compile(wgsl, "main"))
     }
 
     /// The same, with a shader that is compiled, or was.
     pub(crate) fn with(
         gpu: &Gpu,
         packed: &Packed,
-        features: &FeatureSet,
+        set: &FeatureSet,
         compile: impl FnOnce() -> Result<wgpu::ComputePipeline, GpuError>,
     ) -> Result<Self, GpuError> {
         let start = Instant::now();
-        let names = features.names();
-        let buffers = upload(gpu, packed, &names)?;
+        let features = set.features();
+        let has = |feature: Feature| features.contains(&feature);
+        let buffers = upload(gpu, packed, &features)?;
         // These, the pixels, and perhaps the samples' offsets.
-        let needed = buffers.len() as u32 + 1 + u32::from(names.contains("course"));
+        let needed = buffers.len() as u32 + 1 + u32::from(has(Feature::Course));
         let allowed = gpu.device.limits().max_storage_buffers_per_shader_stage;
         if needed > allowed {
             return Err(GpuError::TooManyBuffers {
@@ -69,15 +72,15 @@ impl Pipeline {
         let compile_seconds = start.elapsed().as_secs_f64();
         Ok(Self {
             pipeline,
-            across: if names.contains("quad") { QUAD } else { 1 },
-            pixel_bytes: if features.values { 16 } else { 4 },
-            offsets: if names.contains("course") {
-                features.samples
+            across: if has(Feature::Quad) { QUAD } else { 1 },
+            pixel_bytes: if set.values { 16 } else { 4 },
+            offsets: if has(Feature::Course) {
+                set.samples
             } else {
                 0
             },
-            partial_words: features.partial_words(),
-            camera: names.contains("moving").then_some(packed.camera.numbers),
+            partial_words: set.partial_words(),
+            camera: has(Feature::Moving).then_some(packed.camera.numbers),
             seconds: [compile_seconds, upload_seconds],
             buffers,
         })
@@ -91,9 +94,9 @@ impl Pipeline {
         pixels: &wgpu::Buffer,
         offsets: Option<&wgpu::Buffer>,
     ) -> wgpu::BindGroup {
-        let own = [(0, job), (1, pixels)]
+        let own = [(JOB, job), (PIXELS, pixels)]
             .into_iter()
-            .chain(offsets.map(|offsets| (16, offsets)));
+            .chain(offsets.map(|offsets| (OFFSETS, offsets)));
         let scene = self
             .buffers
             .iter()
@@ -139,87 +142,22 @@ impl Compiled {
     }
 }
 
-/// The buffers that `shaders/bindings.wgsl` declares for these features.
+/// The scene's buffers among the bindings that these features ask for.
 fn upload(
     gpu: &Gpu,
     packed: &Packed,
-    names: &BTreeSet<&str>,
+    features: &Features,
 ) -> Result<Vec<(u32, wgpu::Buffer)>, GpuError> {
     let mut buffers = Vec::new();
-    let mut add =
-        |name: &str, binding: u32, what: &'static str, bytes: &[u8]| -> Result<(), GpuError> {
-            if names.contains(name) {
-                buffers.push((binding, buffer(gpu, what, bytes)?));
-            }
-            Ok(())
-        };
-    // The tables of indices stand behind the objects, in the field `kind`.
-    let tables = packed.tables.words.iter();
-    match &packed.lit {
-        None => {
-            let rows = tables.map(|&kind| Object {
-                kind,
-                ..Object::zeroed()
-            });
-            let objects: Vec<_> = packed.objects.iter().copied().chain(rows).collect();
-            add("ambient_only", 2, "objects", bytes(&objects))?;
+    for binding in BINDINGS.iter().filter(|binding| (binding.holds)(features)) {
+        if let Some(contents) = binding.contents {
+            let contents = contents(packed);
+            let buffer = buffer(gpu, binding.what, contents.bytes())?;
+            buffers.push((binding.number, buffer));
         }
-        Some(lit) => {
-            let rows = tables.map(|&kind| LitObject {
-                kind,
-                ..LitObject::zeroed()
-            });
-            let objects: Vec<_> = lit.objects.iter().copied().chain(rows).collect();
-            add("lit", 2, "objects", bytes(&objects))?;
-        }
-    }
-    add("plane_loop", 3, "planes", bytes(&packed.planes))?;
-    add(
-        "rectangle_loop",
-        4,
-        "finite planes",
-        bytes(&packed.rectangles),
-    )?;
-    if names.contains("sphere_point") {
-        add("sphere_point", 5, "spheres", &packed.sphere_records())?;
-    } else {
-        add("sphere_buffer", 5, "spheres", bytes(&packed.spheres))?;
-    }
-    if names.contains("tiles") {
-        add(
-            "tiles",
-            6,
-            "lists of spheres by tiles of the screen",
-            bytes(&packed.tile_lists()),
-        )?;
-    }
-    add("bvh", 7, "tree nodes", bytes(&packed.bvh))?;
-    add("tiled", 8, "tiled planes", bytes(&packed.tiled_planes))?;
-    add("pplane", 9, "procedural planes", bytes(&packed.pplanes))?;
-    add("textured", 10, "texplanes", bytes(&packed.texplanes))?;
-    add("textured", 11, "texels", bytes(&packed.texels))?;
-    if let Some(lit) = &packed.lit {
-        add("lit", 12, "materials", bytes(&lit.materials))?;
-        add("lit", 13, "lights", bytes(&lit.lights))?;
-        add(
-            "world_planes",
-            14,
-            "planes for all rays",
-            bytes(&lit.planes),
-        )?;
-        add(
-            "world_spheres",
-            15,
-            "spheres for all rays",
-            bytes(&lit.spheres),
-        )?;
     }
     gpu.check()?;
     Ok(buffers)
-}
-
-fn bytes<T: Pod>(records: &[T]) -> &[u8] {
-    bytemuck::cast_slice(records)
 }
 
 fn buffer(gpu: &Gpu, what: &'static str, contents: &[u8]) -> Result<wgpu::Buffer, GpuError> {

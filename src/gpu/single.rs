@@ -5,14 +5,13 @@
 use bytemuck::Zeroable as _;
 
 use super::GpuError;
-use super::compose::compose;
 use super::device::Gpu;
-use super::features::FeatureSet;
-use super::pack::{Job, Packed};
 use super::pipeline::Pipeline;
 use crate::settings::Settings;
-
-const SINGLE: &str = include_str!("single.wgsl");
+use crate::shader::compose::{Entry, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
+use crate::shader::records::Job;
 
 /// 255 times a pixel's value on the GPU.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,9 +24,9 @@ pub struct Single {
 
 /// The shader of a certified picture, a ray a pixel, with the other entry point; none where there is nothing to hit.
 pub fn wgsl(packed: &Packed, features: &FeatureSet) -> Option<String> {
-    let wgsl = features.any_object().then(|| compose(packed, features))?;
-    let before = wgsl.split("@compute").next().unwrap_or_default();
-    Some([before, SINGLE].concat())
+    features
+        .any_object()
+        .then(|| compose(packed, features, Entry::Pixel))
 }
 
 /// What shaders are composed from for it: certified, four words a pixel.

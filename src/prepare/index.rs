@@ -2,7 +2,7 @@
 //!
 //! On most planes of most scenes such an index depends on the pixel's column alone, or on its row alone: the z of a floor,
 //! x and y of a wall that faces the viewer, x and z of a wall that stands upright. There floor(index) is an exact fact of
-//! the column or row, and no pixel need be in doubt about it, tied or not. `gpu::pack` makes tables of these facts.
+//! the column or row, and no pixel need be in doubt about it, tied or not. `shader::pack` makes tables of these facts.
 
 use dashu_int::IBig;
 use glam::DVec3;

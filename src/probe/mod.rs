@@ -28,7 +28,7 @@ use crate::cpu::trace::Limits;
 use crate::frame::PixelFault;
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::pack::Packed;
+use crate::shader::pack::Packed;
 use crate::gpu::single::{Single, SinglePipeline};
 use crate::jitter::{Jitter, Sampling};
 use crate::prepare::View;

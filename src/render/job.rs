@@ -11,10 +11,11 @@ use crate::certify::lanes::Lanes;
 use crate::certify::pixels::{Tracer, Wanted};
 use crate::certify::{Tally, trust};
 use crate::frame::Band;
-use crate::gpu::features::FeatureSet;
-use crate::gpu::pack::Packed;
+use crate::shader::compose::{Entry, LOOP_ITERATIONS, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
-use crate::gpu::{GpuError, bands, compose};
+use crate::gpu::{GpuError, bands};
 use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::settings::Precision;
@@ -45,7 +46,7 @@ impl Job<'_> {
         // Prepared once, for the GPU and for the pixels that the CPU decides.
         let stages = self.on_threads(|| self.tracer.stages());
         let packed = Packed::prepared(stages.bounded(), self.scene, self.settings);
-        let (found, allowed) = (packed.loop_iterations(), compose::LOOP_ITERATIONS);
+        let (found, allowed) = (packed.loop_iterations(), LOOP_ITERATIONS);
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
         }
@@ -60,7 +61,7 @@ impl Job<'_> {
         if live.compiled.is_some() && !certified {
             features = features.while_moving();
         }
-        let wgsl = compose::compose(&packed, &features);
+        let wgsl = compose(&packed, &features, Entry::Picture);
         let packing = start.elapsed().as_secs_f64();
         let compile = || match live.compiled {
             Some(compiled) => compiled.get(gpu, &wgsl),

@@ -10,7 +10,7 @@ use super::number;
 pub use super::limit::MAX_PIXELDIM;
 
 // The tables of shaders are made from the folder of shaders, in one place.
-pub use crate::cpu::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
+pub use crate::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 /// The entity types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {

@@ -1,7 +1,7 @@
 //! The same measurements with a bound set to zero: it has to be noticed.
 
 use plumb::gpu::device::Gpu;
-use plumb::gpu::pack::Packed;
+use plumb::shader::pack::Packed;
 
 use crate::primary::Picture;
 use crate::support::{Seen, with_constant};

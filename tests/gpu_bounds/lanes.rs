@@ -2,10 +2,10 @@
 
 use plumb::certify::lanes::{LANES, Lanes};
 use plumb::cpu::pixel::Stages;
-use plumb::gpu::pack::Packed;
 use plumb::jitter::Sampling;
 use plumb::prepare::View;
 use plumb::render::Settings;
+use plumb::shader::pack::Packed;
 
 use crate::common;
 use crate::pictures::{Count, without_literal_bounds};

@@ -1,12 +1,13 @@
 //! Whole pictures: which of the pixels that a shader calls certain are wrong.
 
-use plumb::gpu::compose::{WORKGROUP, compose};
 use plumb::gpu::device::Gpu;
-use plumb::gpu::features::FeatureSet;
-use plumb::gpu::pack::{Job, Packed};
 use plumb::gpu::pipeline::Pipeline;
 use plumb::render::Settings;
 use plumb::scene::Scene;
+use plumb::shader::compose::{Entry, WORKGROUP, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::pack::Packed;
+use plumb::shader::records::Job;
 use wgpu::util::DeviceExt as _;
 
 use crate::support::with_constant;
@@ -86,13 +87,13 @@ pub(crate) fn count(
     let mut packed = Packed::new(scene, settings);
     let features = FeatureSet::new(&packed, settings, gpu.lanes);
     assert_eq!(packed.unprovable, None);
-    let mut wgsl = compose(&packed, &features);
+    let mut wgsl = compose(&packed, &features, Entry::Picture);
     let objects = scene.objects.len();
     match fault {
         Fault::Right => {}
         Fault::NoBounds => {
             without_literal_bounds(&mut packed);
-            wgsl = with_constant(&compose(&packed, &features), "U", "0f");
+            wgsl = with_constant(&compose(&packed, &features, Entry::Picture), "U", "0f");
         }
         Fault::NoTables => packed.tables.words[..objects].fill(0),
         Fault::Entry(row) => {

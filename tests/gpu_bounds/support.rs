@@ -1,9 +1,9 @@
 //! Random operands, runs on the GPU, and the tables of what was measured.
 
 use glam::DVec3;
-use plumb::gpu::bounds::up;
 use plumb::gpu::device::{self, Gpu};
-use plumb::gpu::pack::Job;
+use plumb::shader::bounds::up;
+use plumb::shader::records::Job;
 use wgpu::util::DeviceExt as _;
 
 /// SplitMix64.

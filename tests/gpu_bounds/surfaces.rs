@@ -1,11 +1,11 @@
 //! Bounds at a hit point: indices of tiles and blocks, the colour wheel, the glint's power.
 
 use glam::DVec3;
-use plumb::gpu::bounds::up;
 use plumb::gpu::device::Gpu;
 use plumb::prepare::plane::rows;
 use plumb::real::V3;
 use plumb::scene::{Object, Shape, Surface};
+use plumb::shader::bounds::up;
 
 use crate::support::{Rng, Seen, rounded, run};
 use crate::world::{UNIT, VIEWPOINT, World};

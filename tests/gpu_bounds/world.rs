@@ -1,12 +1,12 @@
 //! Running bounds: rays from anywhere against planes, rectangles and spheres.
 
 use glam::{DVec2, DVec3};
-use plumb::gpu::compose::compose;
 use plumb::gpu::device::Gpu;
-use plumb::gpu::features::FeatureSet;
-use plumb::gpu::pack::Packed;
 use plumb::render::Settings;
 use plumb::scene::{Camera, Extent, Light, Material, Object, Scene, Shape, Surface};
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::pack::Packed;
 
 use crate::support::{Rng, Seen, TrueBeam, run};
 
@@ -128,7 +128,11 @@ impl World {
     pub(crate) fn of(scene: Scene, settings: &Settings) -> Self {
         let packed = Packed::new(&scene, settings);
         assert_eq!(packed.unprovable, None);
-        let wgsl = compose(&packed, &FeatureSet::new(&packed, settings, 8));
+        let wgsl = compose(
+            &packed,
+            &FeatureSet::new(&packed, settings, 8),
+            Entry::Picture,
+        );
         Self {
             scene,
             packed,

@@ -6,7 +6,6 @@
 
 mod records;
 
-use std::collections::BTreeSet;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -14,9 +13,9 @@ use glam::DVec2;
 use super::dispatch::Runner;
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
-use crate::gpu::compose::preprocess;
 use crate::gpu::device::Gpu;
-use crate::gpu::literal::{literal, vector};
+use crate::shader::literal::{literal, vector};
+use crate::shader::preprocess::{Directives, preprocess};
 use crate::image::Picture;
 use crate::scene::{Scene, Shape};
 use crate::settings::Settings;
@@ -186,10 +185,12 @@ pub fn wgsl(
 ) -> String {
     // What primary rays hit does not depend on the lights.
     let lit = !scene.lights.is_empty() && !report;
-    let names: BTreeSet<&str> = [("prepared", prepared), ("report", report), ("lit", lit)]
-        .into_iter()
-        .filter_map(|(name, holds)| holds.then_some(name))
-        .collect();
+    let holds = |name: &str| match name {
+        "prepared" => Some(prepared),
+        "report" => Some(report),
+        "lit" => Some(lit),
+        _ => None,
+    };
     let camera = &scene.camera;
     let view = camera.viewpoint;
     let narrow = |v: DVec2| vector(&v.as_vec2().to_array());
@@ -236,7 +237,14 @@ pub fn wgsl(
         ]);
     }
     let mut text = constants.join("\n") + "\n";
-    preprocess(TEXTBOOK, &names, &|_| String::new(), &mut text);
+    let directives = Directives {
+        holds: &holds,
+        insert: &|_| None,
+        certified: false,
+    };
+    if let Err(error) = preprocess(TEXTBOOK, &directives, &mut text) {
+        unreachable!("textbook.wgsl: {error}");
+    }
     text
 }
 

@@ -7,8 +7,10 @@
 
 mod shade;
 
-use crate::gpu::bounds::{self, U, named};
-use crate::gpu::pack::{Kind, Packed, Plane, Rectangle, Sphere};
+use crate::shader::bounds::{self, U};
+use crate::shader::kind::SurfaceKind;
+use crate::shader::pack::Packed;
+use crate::shader::records::{Plane, Rectangle, Sphere};
 use crate::prepare::Prepared;
 use crate::real::Bounded;
 use crate::scene::Scene;
@@ -133,20 +135,20 @@ impl Lanes {
 
     /// A packed scene without lights, for a ray a pixel.
     pub fn of(packed: Packed) -> Option<Self> {
-        let here = |kind: &Kind| matches!(kind, Kind::Plain | Kind::Tiled);
+        let here = |kind: &SurfaceKind| matches!(kind, SurfaceKind::Plain | SurfaceKind::Tiled);
         if packed.unprovable.is_some() || !packed.kinds.iter().any(here) {
             return None;
         }
         let spread = f64::from(packed.camera.spread);
         let constants = Constants {
             u: U as f32,
-            root_roundings: named("ROOT_ROUNDINGS"),
-            index_roundings: named("INDEX_ROUNDINGS"),
+            root_roundings: bounds::up(bounds::ROOT_ROUNDINGS),
+            index_roundings: bounds::up(bounds::INDEX_ROUNDINGS),
             value_error: bounds::up(bounds::VALUE_ROUNDINGS * spread * U),
         };
         Some(Self {
             constants,
-            modulated: packed.kinds.iter().any(|kind| *kind != Kind::Plain),
+            modulated: packed.kinds.iter().any(|kind| *kind != SurfaceKind::Plain),
             packed,
         })
     }

@@ -1,7 +1,8 @@
 //! The colours of eight hits: `ray_trace`, `tplane_foreground` and `camera_setpix` of the shaders.
 
 use super::{Closest, Constants, Eight, LANES, Lane, Lanes};
-use crate::gpu::pack::{Kind, TiledPlane};
+use crate::shader::kind::SurfaceKind;
+use crate::shader::records::TiledPlane;
 
 impl Lanes {
     /// The colours of the closest hits: `ray_trace` and `camera_setpix`.
@@ -42,7 +43,7 @@ impl Lanes {
             let number = closest.object[i];
             let object = &packed.objects[number as usize];
             let mut color = &object.ambient;
-            if object.kind & 255 == Kind::Tiled.code() {
+            if object.kind & 255 == SurfaceKind::Tiled.code() {
                 let plane = &packed.tiled_planes[(object.kind >> 8) as usize];
                 let known = tiles.take().filter(|(of, _)| *of == number);
                 let (_, here) = tiles

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use super::GpuError;
 use super::canvas::Canvas;
-use super::compose::WORKGROUP;
+use crate::shader::compose::WORKGROUP;
 use super::device::Gpu;
 use super::pipeline::Pipeline;
 use crate::frame::Stop;

@@ -5,7 +5,7 @@
 
 use super::plan::Rectangle;
 use crate::frame::Part;
-use crate::gpu::features::PARTIAL_HEAD;
+use crate::shader::feature_set::PARTIAL_HEAD;
 use crate::gpu::pipeline::Pipeline;
 
 /// Bytes of the counter of records, before the pixels.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::compose::WORKGROUP;
+use crate::shader::compose::WORKGROUP;
 use crate::jitter::Jitter;
 
 /// Ray–object tests of the first dispatch, whose speed is not known yet, for each second that it may take: what two CPU cores

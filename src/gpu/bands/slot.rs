@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use super::super::GpuError;
-use super::super::compose::WORKGROUP;
+use crate::shader::compose::WORKGROUP;
 use super::super::device::Gpu;
-use super::super::pack::{CameraNumbers, Job};
+use crate::shader::records::{CameraNumbers, Job};
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::partial;

@@ -3,7 +3,7 @@
 
 use dashu_int::IBig;
 
-use crate::gpu::compose::pplane_asks;
+use crate::procedural::{self, Family};
 use crate::prepare::exact::parity;
 use crate::prepare::index::{Index, indices};
 use crate::prepare::{Prepared, Surface};
@@ -65,7 +65,7 @@ fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<V
     // (For an index: whether there is anything to decide about it, and the bits of its floor.)
     let bits: &dyn Fn(usize, &IBig) -> u32 = match surface {
         Surface::Tiled(tiled) => &|i, floor| parity_bits(i, parity(floor) ^ tiled.index[i].parity),
-        Surface::Pplane(pplane) if pplane_asks(pplane.shader, "pplane_odd(") => {
+        Surface::Pplane(pplane) if procedural::asks(Family::Pplane, pplane.shader, "pplane_odd(") => {
             &|i, floor| parity_bits(i, parity(floor) ^ pplane.index[i].parity)
         }
         Surface::Textured(textured) if textured.size.iter().all(|s| *s <= MOST_TEXELS) => {
@@ -119,7 +119,7 @@ fn texel_bits(i: usize, floor: &IBig, size: u32, repeats: bool) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::pack::Packed;
+    use crate::shader::pack::Packed;
     use crate::scene::load;
 
     #[test]

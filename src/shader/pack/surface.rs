@@ -1,7 +1,9 @@
 //! The records of what modulates an object's material: tiles, procedural planes, textures.
 
-use super::{ProceduralPlane, Texplane, TiledPlane, f32x3};
-use crate::gpu::bounds::{U, most, up};
+use super::f32x3;
+use crate::shader::record::Pad;
+use crate::shader::records::{ProceduralPlane, Texplane, TiledPlane};
+use crate::shader::bounds::{U, most, up};
 use crate::prepare::Prepared;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::real::{Bounded, Real, V3};
@@ -38,10 +40,10 @@ pub(super) fn tiled_plane(
         altmaterial: f32x3(scene.palette[other].ambient),
         altindex: other as u32,
         parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
-        padding: 0,
+        pad_0: Pad::default(),
         spread: rows.map(length),
         errors: tiled.index.map(|i| index_error(i.fraction)),
-        padding_end: [0; 2],
+        pad_1: Pad::default(),
     }
 }
 
@@ -58,7 +60,7 @@ pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
         fraction: pplane.index.map(|i| i.fraction.value as f32),
         from_point_error: up(4.0 * U * offset + x.offset.error + y.offset.error),
         parity: pplane.index.map(|i| i.parity as f32),
-        unused: 0,
+        pad: Pad::default(),
         from_point: [
             x.per_unit.value as f32,
             y.per_unit.value as f32,

@@ -1,7 +1,9 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
-use super::{Light, LitObject, Material, Packed, WorldPlane, WorldSphere, f32x3};
-use crate::gpu::bounds::{U, most, up};
+use super::{Packed, f32x3};
+use crate::shader::record::Pad;
+use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
+use crate::shader::bounds::{U, most, up};
 use crate::prepare::{self, Prepared, World, world};
 use crate::real::{Bounded, Real, V3};
 
@@ -118,7 +120,7 @@ fn light(light: &prepare::Light<Bounded>) -> Light {
         emissivity: f32x3(light.emissivity),
         size: size(light.location),
         axis: f32x3(axis),
-        unused: 0,
+        pad: Pad::default(),
     }
 }
 
@@ -173,7 +175,7 @@ fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> Wo
         bounded: u32::from(plane.extent.is_some()),
         highest,
         sides_error: up(8.0 * U * (most_of(origin) + most_of(dimensions))),
-        unused: [0.0; 2],
+        pad: Pad::default(),
     }
 }
 
@@ -186,8 +188,6 @@ fn world_sphere(world: &World<Bounded>, sphere: &world::WorldSphere<Bounded>) ->
         level: bits(&sphere.level),
         size: size(sphere.center),
         inverse_radius: (Bounded::exact(1.0) / sphere.radius).value as f32,
-        unused_0: 0,
-        unused_1: 0,
-        unused_2: 0,
+        pad: Pad::default(),
     }
 }

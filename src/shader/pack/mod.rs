@@ -3,13 +3,11 @@
 mod lit;
 mod primary;
 mod range;
-mod records;
 mod shared;
 mod surface;
 mod tables;
 
 pub use lit::Lit;
-pub use records::*;
 pub use tables::Tables;
 
 use std::sync::Arc;
@@ -17,6 +15,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::bounds::{Screen, U, most, up};
+use super::kind::SurfaceKind;
+use super::record::Pad;
+use super::records::{
+    BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere, SphereAndHit, SphereHit,
+    Texplane, TiledPlane,
+};
 use crate::prepare::tiles::Tiles;
 use crate::prepare::{self, Prepared, View};
 use crate::real::{Bounded, V3};
@@ -24,45 +28,6 @@ use crate::scene::Scene;
 use crate::settings::{Settings, Spread};
 use shared::Surfaces;
 use surface::{procedural_plane, texplane, tiled_plane};
-
-/// What `Object::kind` says in its low byte.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    /// The material alone.
-    Plain,
-    /// A `tiled_plane`.
-    Tiled,
-    /// A `pplane` with this shader.
-    Pplane(u32),
-    /// A `psphere` with this shader.
-    Psphere(u32),
-    /// A `texplane`.
-    Textured,
-}
-
-impl Kind {
-    /// The low byte: families of up to 64 shaders each.
-    pub fn code(self) -> u32 {
-        match self {
-            Self::Plain => 0,
-            Self::Tiled => 1,
-            Self::Textured => 2,
-            Self::Pplane(shader) => 64 + shader,
-            Self::Psphere(shader) => 128 + shader,
-        }
-    }
-
-    /// The name of the code in WGSL.
-    pub fn name(self) -> String {
-        match self {
-            Self::Plain => "KIND_PLAIN".into(),
-            Self::Tiled => "KIND_TILED".into(),
-            Self::Pplane(shader) => format!("KIND_PPLANE_{shader}"),
-            Self::Psphere(shader) => format!("KIND_PSPHERE_{shader}"),
-            Self::Textured => "KIND_TEXTURED".into(),
-        }
-    }
-}
 
 /// The whole scene, packed.
 #[derive(Debug, Clone)]
@@ -74,7 +39,7 @@ pub struct Packed {
     /// One for each object of the scene.
     pub objects: Vec<Object>,
     /// The kinds of the objects that a ray can hit.
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<SurfaceKind>,
     /// Planes without end that a primary ray can hit.
     pub planes: Vec<Plane>,
     /// Rectangles that a primary ray can hit.
@@ -235,12 +200,8 @@ impl Packed {
         let brightest = |color: &[f32; 3]| f64::from(color.iter().copied().fold(0.0, f32::max));
         let objects = self.objects.iter().map(|o| brightest(&o.ambient));
         let others = self.tiled_planes.iter().map(|t| brightest(&t.altmaterial));
-        let wheels = self.kinds.iter().map(|kind| match kind {
-            Kind::Pplane(_) => 12.0,
-            Kind::Psphere(_) => 2.0,
-            _ => 0.0,
-        });
-        let most = objects.chain(others).chain(wheels).fold(1e-30, f64::max);
+        let ambient = objects.chain(others).fold(0.0, f64::max);
+        let most = self.kinds.iter().map(|kind| kind.brightest(ambient)).fold(1e-30, f64::max);
         (0.9 / (most * 1.001 * f64::from(self.camera.numbers.gain))).min(f64::from(f32::MAX)) as f32
     }
 
@@ -256,11 +217,11 @@ impl Packed {
             prepare::Surface::Tiled(tiled) => {
                 self.tiled_planes
                     .push(tiled_plane(scene, tiled, scene.materials[object]));
-                self.set_kind(object, Kind::Tiled, self.tiled_planes.len() - 1);
+                self.set_kind(object, SurfaceKind::Tiled, self.tiled_planes.len() - 1);
             }
             prepare::Surface::Pplane(pplane) => {
                 self.pplanes.push(procedural_plane(pplane));
-                self.set_kind(object, Kind::Pplane(pplane.shader), self.pplanes.len() - 1);
+                self.set_kind(object, SurfaceKind::Pplane(pplane.shader), self.pplanes.len() - 1);
             }
             prepare::Surface::Textured(textured) => {
                 let first = *textures[textured.texture].get_or_insert_with(|| {
@@ -274,18 +235,18 @@ impl Packed {
                     first
                 });
                 self.texplanes.push(texplane(textured, first));
-                self.set_kind(object, Kind::Textured, self.texplanes.len() - 1);
+                self.set_kind(object, SurfaceKind::Textured, self.texplanes.len() - 1);
             }
             prepare::Surface::Psphere(shader) => {
-                self.set_kind(object, Kind::Psphere(*shader), record);
+                self.set_kind(object, SurfaceKind::Psphere(*shader), record);
             }
-            prepare::Surface::Plain => self.set_kind(object, Kind::Plain, 0),
+            prepare::Surface::Plain => self.set_kind(object, SurfaceKind::Plain, 0),
         }
     }
 
-    fn set_kind(&mut self, object: usize, kind: Kind, record: usize) {
+    fn set_kind(&mut self, object: usize, kind: SurfaceKind, record: usize) {
         // A plain object needs no record; the others are far fewer than 2²⁴ before any buffer is full.
-        self.objects[object].kind = if kind == Kind::Plain {
+        self.objects[object].kind = if kind == SurfaceKind::Plain {
             0
         } else {
             kind.code() | ((record as u32) << 8)
@@ -295,13 +256,11 @@ impl Packed {
         }
     }
 
-    /// The records `SphereAndHit` of `shaders/sphere.wgsl`, for shaders that look at hits.
-    pub fn sphere_records(&self) -> Vec<u8> {
+    /// The spheres with where they are hit, for shaders that look at hits.
+    pub fn sphere_records(&self) -> Vec<SphereAndHit> {
         let pairs = self.spheres.iter().zip(&self.sphere_points);
         pairs
-            .flat_map(|(sphere, hit)| {
-                [bytemuck::bytes_of(sphere), bytemuck::bytes_of(hit)].concat()
-            })
+            .map(|(&sphere, &hit)| SphereAndHit { sphere, hit })
             .collect()
     }
 
@@ -364,7 +323,7 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
             distance: d as f32,
             gain: (255.0 * unit) as f32,
             unit: unit as f32,
-            unused: 0,
+            pad: Pad::default(),
         },
         w_error: up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
         spread: up(1.0 + more[0] + more[1]),

@@ -5,8 +5,49 @@ use crate::prepare::exact::ratio;
 use crate::prepare::plane::Step;
 use crate::real::Bounded;
 
-/// What + − × may be off by, relatively: the results are faithfully rounded.
-pub const U: f64 = 1.0 / 8_388_608.0;
+macro_rules! named {
+    ($($(#[doc = $doc:literal])+ $name:ident = $value:expr;)+) => {
+        $($(#[doc = $doc])+ pub const $name: f64 = $value;)+
+
+        /// The constants that the shader's text refers to by name.
+        pub const NAMED: &[(&str, f64)] = &[$((stringify!($name), $name)),+];
+    };
+}
+
+named! {
+    /// What + − × may be off by, relatively: the results are faithfully rounded.
+    U = 1.0 / 8_388_608.0;
+    /// What a square root is taken of is at least this.
+    TINY_SQUARE = 1.0 / (1_u128 << 110) as f64;
+    /// Secondary hits farther than this are left to the CPU.
+    FARTHEST = (1_u64 << 40) as f64;
+    /// Primary hits whose 1/s is no more than this are left to the CPU.
+    LEAST_INVERSE = 1.0 / (1_u64 << 40) as f64;
+    /// Directions that are known less well than this are not followed: the bounds are first order there.
+    DIR_LIMIT = 1.0 / 128.0;
+    /// Roundings of a dot product with a plane, of its sum with an offset.
+    PLANE_ROUNDINGS = 6.0;
+    /// Roundings of base + t·dir.
+    POSITION_ROUNDINGS = 5.0;
+    /// Roundings of the perpendicular from a ray to a center.
+    PERPENDICULAR_ROUNDINGS = 12.0;
+    /// Roundings of r² − |perpendicular|².
+    DISC_ROUNDINGS = 12.0;
+    /// Roundings of a root by `inverseSqrt`, and what is added to it.
+    ROOT_ROUNDINGS = 10.0;
+    /// Roundings of a unit normal.
+    NORMAL_ROUNDINGS = 5.0;
+    /// Roundings of a vector divided by its length.
+    DIRECTION_ROUNDINGS = 8.0;
+    /// Roundings of a dot product of unit vectors.
+    DOT_ROUNDINGS = 5.0;
+    /// Roundings of a mirrored direction.
+    MIRROR_ROUNDINGS = 18.0;
+    /// Roundings of an index of tiles, blocks or texels.
+    INDEX_ROUNDINGS = 5.0;
+    /// Roundings of the colours of `color_wheel`.
+    WHEEL_ROUNDINGS = 20.0;
+}
 
 /// Added to every literal bound: what flushed subnormals may amount to.
 const FLOOR: f64 = 1.0 / (1_u128 << 100) as f64;
@@ -27,41 +68,6 @@ pub const LENGTH_ROUNDINGS: f64 = 20.0;
 pub const DIR_ROUNDINGS: f64 = 12.0;
 /// See [`LENGTH_ROUNDINGS`].
 pub const VALUE_ROUNDINGS: f64 = 13.0;
-
-/// The constants that the shader's text refers to by name.
-pub const NAMED: &[(&str, f64)] = &[
-    ("U", U),
-    // What a square root is taken of is at least this.
-    ("TINY_SQUARE", 1.0 / (1_u128 << 110) as f64),
-    // Secondary hits farther than this are left to the CPU, and primary ones beyond its inverse.
-    ("FARTHEST", (1_u64 << 40) as f64),
-    ("LEAST_INVERSE", 1.0 / (1_u64 << 40) as f64),
-    // Directions that are known less well than this are not followed: the bounds are first order there.
-    ("DIR_LIMIT", 1.0 / 128.0),
-    ("PLANE_ROUNDINGS", 6.0),
-    ("POSITION_ROUNDINGS", 5.0),
-    ("PERPENDICULAR_ROUNDINGS", 12.0),
-    ("DISC_ROUNDINGS", 12.0),
-    ("ROOT_ROUNDINGS", 10.0),
-    ("NORMAL_ROUNDINGS", 5.0),
-    ("DIRECTION_ROUNDINGS", 8.0),
-    ("DOT_ROUNDINGS", 5.0),
-    ("MIRROR_ROUNDINGS", 18.0),
-    ("INDEX_ROUNDINGS", 5.0),
-    ("WHEEL_ROUNDINGS", 20.0),
-];
-
-/// The constant of this name, rounded up.
-///
-/// # Panics
-/// If there is none: the names are written in the program.
-pub fn named(name: &str) -> f32 {
-    let constant = NAMED.iter().find(|(n, _)| *n == name);
-    up(constant.map_or_else(
-        || unreachable!("no constant is named {name}"),
-        |(_, value)| *value,
-    ))
-}
 
 /// The pixels of the picture, and how rays pass through them.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,12 @@
-//! What a scene needs of the shader: the names that `//#if` in `shaders/` asks for, and nothing else.
+//! What a packed scene needs of the shader, and which features follow from that.
 
 use std::collections::BTreeSet;
 
-use super::pack::{Kind, Packed};
+use super::feature::{Feature, Features};
+use super::kind::SurfaceKind;
+use super::pack::Packed;
 use crate::prepare::exact::two_to;
+use crate::procedural::{self, Family, Shader};
 use crate::settings::{Precision, Settings, Spread};
 
 /// Which parts of the shader a scene needs.
@@ -34,7 +37,7 @@ pub struct FeatureSet {
     /// The camera and all objects stand in buffers, so that another viewpoint is not another shader.
     pub moving: bool,
     /// The kinds of surface.
-    pub kinds: BTreeSet<Kind>,
+    pub kinds: BTreeSet<SurfaceKind>,
     /// The unquantised values are wanted too.
     pub values: bool,
     /// Rays a pixel.
@@ -92,9 +95,12 @@ pub const QUAD: u32 = 4;
 /// costs, and the registers are missed (docs/BENCH.md).
 const QUAD_OBJECTS: [usize; 2] = [8, 4];
 
+/// Lanes of a software driver's vectors, 256 bits wide as a rule.
+pub const SOFTWARE_LANES: u32 = 8;
+
 impl FeatureSet {
     /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a limit on
-    /// loops (see [`Gpu::lanes`](super::device::Gpu::lanes)).
+    /// loops (see [`Gpu::lanes`](crate::gpu::device::Gpu::lanes)).
     pub fn new(packed: &Packed, settings: &Settings, lanes: u32) -> Self {
         let objects = packed
             .lit
@@ -172,133 +178,148 @@ impl FeatureSet {
         }
     }
 
-    /// Numbers of the `pplane` shaders used.
-    pub fn pplanes(&self) -> BTreeSet<u32> {
-        self.numbers(|kind| {
-            if let Kind::Pplane(shader) = kind {
-                Some(shader)
-            } else {
-                None
-            }
-        })
+    /// The procedural shaders used, and those that they call: planes' before spheres'.
+    pub fn procedural(&self) -> Vec<&'static Shader> {
+        let used = |family: Family| {
+            let numbers = self.kinds.iter().filter_map(|kind| kind.shader_of(family));
+            procedural::with_called(family, numbers.collect())
+        };
+        [used(Family::Pplane), used(Family::Psphere)].concat()
     }
 
-    /// Numbers of the `psphere` shaders used.
-    pub fn pspheres(&self) -> BTreeSet<u32> {
-        self.numbers(|kind| match kind {
-            Kind::Psphere(shader) => Some(shader),
-            _ => None,
-        })
+    /// What `//#if` in `shaders/` finds to hold.
+    pub fn features(&self) -> Features {
+        let holds = Conditions::new(self);
+        Feature::ALL
+            .iter()
+            .copied()
+            .filter(|feature| holds.feature(*feature))
+            .collect()
     }
+}
 
-    fn numbers(&self, number: impl Fn(Kind) -> Option<u32>) -> BTreeSet<u32> {
-        self.kinds.iter().copied().filter_map(number).collect()
-    }
+/// A feature set, and what several features ask of it.
+struct Conditions<'a> {
+    set: &'a FeatureSet,
+    /// A ray can hit something.
+    any: bool,
+    lit: bool,
+    /// What lights need; nothing without lights.
+    light: LitFeatures,
+    certified: bool,
+    bvh: bool,
+    /// Objects stand in buffers.
+    loops: bool,
+    tiled: bool,
+    textured: bool,
+    pplane: bool,
+    psphere: bool,
+}
 
-    /// The names that hold, for `//#if`.
-    pub fn names(&self) -> BTreeSet<&'static str> {
-        // Without anything to hit no surface is looked at.
-        let any = self.any_object();
-        let tiled = any && self.kinds.contains(&Kind::Tiled);
-        let textured = any && self.kinds.contains(&Kind::Textured);
-        let pplane = any && !self.pplanes().is_empty();
-        let psphere = any && !self.pspheres().is_empty();
+impl<'a> Conditions<'a> {
+    fn new(set: &'a FeatureSet) -> Self {
+        let any = set.any_object();
         // Without anything to hit there is nothing to light.
-        let is_lit = any && self.lit.is_some();
-        let lit = self.lit.filter(|_| any).unwrap_or_default();
-        let certified = any && self.certified;
-        let bvh = is_lit && self.bvh;
-        // In a lit scene with a tree, hits on spheres are looked at as those of rays from anywhere are.
-        let sphere_point = self.spheres && if is_lit { !bvh } else { psphere };
-        let loops = !self.unrolled;
-        let kinds_of_shape = [self.planes, self.rectangles, self.spheres];
-        [
-            ("any_object", any),
-            ("ambient_only", any && !is_lit),
-            ("plane", self.planes),
-            ("rectangle", self.rectangles),
-            ("front", self.front),
-            ("plane_loop", self.planes && loops),
-            ("rectangle_loop", self.rectangles && loops),
-            ("sphere", self.spheres),
-            ("tiles", self.spheres && self.tiles),
-            ("sphere_loop", self.spheres && loops && !self.tiles),
-            ("sphere_buffer", self.spheres && (loops || sphere_point)),
-            ("sphere_point", sphere_point),
-            // Spheres hit by rays from elsewhere, or as by such.
-            (
-                "sphere_beyond",
-                lit.spheres && (lit.mirror || lit.clear || bvh),
-            ),
-            ("bvh", bvh),
-            // Where the error of a hit goes on into positions.
-            (
-                "first_order",
-                certified && !is_lit && (tiled || textured || pplane || psphere),
-            ),
-            ("certified", certified),
-            ("moving", any && self.moving),
-            (
-                "barrier",
-                is_lit || pplane || psphere || (certified && self.spheres),
-            ),
-            ("groups", self.groups && certified),
-            ("tables", certified && self.tables),
-            ("index", certified && (tiled || textured || pplane)),
-            (
-                "doubtful",
-                certified && (is_lit || tiled || textured || pplane || psphere),
-            ),
-            // Where objects do not come in the order of the file.
-            (
-                "mixed",
-                self.tiles || kinds_of_shape.iter().filter(|shape| **shape).count() > 1,
-            ),
-            (
-                "modulated",
-                self.kinds
-                    .iter()
-                    .any(|k| *k != Kind::Plain && (!is_lit || *k != Kind::Tiled)),
-            ),
-            ("tiled", tiled),
-            ("tiled_ambient", tiled && !is_lit),
-            ("textured", textured),
-            ("pplane", pplane),
-            ("psphere", psphere),
-            ("position", is_lit || tiled || textured || pplane),
-            ("from_center", psphere || lit.spheres),
-            ("quad", any && self.quad),
-            ("values", self.values),
-            ("samples", any && self.samples > 1),
-            ("partial", self.partial_words() > 0),
-            ("course", any && self.course),
-            ("counted", any && (is_lit || self.tiles || self.samples > 1)),
-            ("lit", is_lit),
-            ("lit_sphere", lit.spheres),
-            ("lit_plane", lit.planes),
-            ("world_planes", lit.planes),
-            (
-                "world_spheres",
-                lit.spheres && (loops || lit.mirror || lit.clear || bvh),
-            ),
-            ("mirror", lit.mirror),
-            ("clear", lit.clear),
-            ("branches", lit.mirror || lit.clear),
-            ("stack", lit.mirror && lit.clear),
-            ("any_hit", is_lit && !lit.clear),
-            ("glint", lit.glint),
-            ("cone", lit.cone),
-            ("level", lit.level),
-            ("rectangle_anywhere", lit.rectangles),
-            (
-                "world_loop",
-                is_lit && loops && (lit.planes || lit.loose_spheres),
-            ),
-            ("world_plane_loop", is_lit && loops && lit.planes),
-            ("world_sphere_loop", is_lit && loops && lit.loose_spheres),
-        ]
-        .into_iter()
-        .filter_map(|(name, holds)| holds.then_some(name))
-        .collect()
+        let lit = any && set.lit.is_some();
+        Self {
+            set,
+            any,
+            lit,
+            light: set.lit.filter(|_| any).unwrap_or_default(),
+            certified: any && set.certified,
+            bvh: lit && set.bvh,
+            loops: !set.unrolled,
+            tiled: any && set.kinds.contains(&SurfaceKind::Tiled),
+            textured: any && set.kinds.contains(&SurfaceKind::Textured),
+            pplane: any && set.kinds.iter().any(|kind| matches!(kind, SurfaceKind::Pplane(_))),
+            psphere: any && set.kinds.iter().any(|kind| matches!(kind, SurfaceKind::Psphere(_))),
+        }
+    }
+
+    fn feature(&self, feature: Feature) -> bool {
+        let Self {
+            set,
+            any,
+            lit,
+            light,
+            certified,
+            bvh,
+            loops,
+            tiled,
+            textured,
+            pplane,
+            psphere,
+        } = *self;
+        match feature {
+            Feature::AnyObject => any,
+            Feature::AmbientOnly => any && !lit,
+            Feature::Plane => set.planes,
+            Feature::Rectangle => set.rectangles,
+            Feature::Front => set.front,
+            Feature::PlaneLoop => set.planes && loops,
+            Feature::RectangleLoop => set.rectangles && loops,
+            Feature::Sphere => set.spheres,
+            Feature::Tiles => set.spheres && set.tiles,
+            Feature::SphereLoop => set.spheres && loops && !set.tiles,
+            Feature::SphereBuffer => set.spheres && (loops || self.feature(Feature::SpherePoint)),
+            // In a lit scene with a tree, hits on spheres are looked at as those of rays from anywhere are.
+            Feature::SpherePoint => set.spheres && if lit { !bvh } else { psphere },
+            Feature::SphereBeyond => light.spheres && (light.mirror || light.clear || bvh),
+            Feature::Bvh => bvh,
+            Feature::FirstOrder => certified && !lit && (tiled || textured || pplane || psphere),
+            Feature::Certified => certified,
+            Feature::Moving => any && set.moving,
+            Feature::Barrier => lit || pplane || psphere || (certified && set.spheres),
+            Feature::Groups => set.groups && certified,
+            Feature::Tables => certified && set.tables,
+            Feature::Index => certified && (tiled || textured || pplane),
+            Feature::Doubtful => certified && (lit || tiled || textured || pplane || psphere),
+            Feature::Mixed => {
+                let shapes = [set.planes, set.rectangles, set.spheres];
+                set.tiles || shapes.iter().filter(|shape| **shape).count() > 1
+            }
+            Feature::Modulated => set.kinds.iter().any(|kind| kind.modulates_ambient(lit)),
+            Feature::Tiled => tiled,
+            Feature::Pplane => pplane,
+            Feature::Psphere => psphere,
+            Feature::Textured => textured,
+            Feature::Position => lit || tiled || textured || pplane,
+            Feature::FromCenter => psphere || light.spheres,
+            Feature::Quad => any && set.quad,
+            Feature::Values => set.values,
+            Feature::Samples => any && set.samples > 1,
+            Feature::Partial => set.partial_words() > 0,
+            Feature::Course => any && set.course,
+            Feature::Counted => any && (lit || set.tiles || set.samples > 1),
+            Feature::Lit => lit,
+            Feature::LitSphere => light.spheres,
+            Feature::WorldPlanes => light.planes,
+            Feature::WorldSpheres => {
+                light.spheres && (loops || light.mirror || light.clear || bvh)
+            }
+            Feature::Mirror => light.mirror,
+            Feature::Clear => light.clear,
+            Feature::Branches => light.mirror || light.clear,
+            Feature::Stack => light.mirror && light.clear,
+            Feature::AnyHit => lit && !light.clear,
+            Feature::Glint => light.glint,
+            Feature::Cone => light.cone,
+            Feature::Level => light.level,
+            Feature::RectangleAnywhere => light.rectangles,
+            Feature::WorldLoop => lit && loops && (light.planes || light.loose_spheres),
+            Feature::WorldPlaneLoop => lit && loops && light.planes,
+            Feature::WorldSphereLoop => lit && loops && light.loose_spheres,
+            // A helper comes in where a chosen shader names it, or another helper does.
+            Feature::ColorWheel => self.asks("color_wheel("),
+            Feature::PplaneOdd => self.asks("pplane_odd("),
+            Feature::PplaneFromPoint => self.asks("pplane_from_point("),
+            Feature::Odd => tiled || self.asks("pplane_odd("),
+            Feature::Whole => tiled || textured || self.asks("pplane_odd("),
+        }
+    }
+
+    /// Whether a procedural shader in use names `helper`.
+    fn asks(&self, helper: &str) -> bool {
+        self.any && self.set.procedural().iter().any(|shader| shader.wgsl.contains(helper))
     }
 }

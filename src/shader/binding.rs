@@ -1,0 +1,199 @@
+//! What the shader is bound to: one table of number, name, type, condition and contents. The declarations in WGSL, the
+//! upload, `plumb dump --stage buffers`, the check of the numbers' range and the tests read it.
+
+use std::borrow::Cow;
+use std::fmt::{Debug, Write as _};
+
+use bytemuck::{Pod, Zeroable as _};
+
+use super::feature::{Feature, Features};
+use super::pack::{Lit, Packed};
+use super::record::Record;
+use super::records::{LitObject, Object};
+
+/// A binding of group 0.
+pub struct Binding {
+    /// Its number. Of those with the same number at most one holds.
+    pub number: u32,
+    /// Its name in WGSL.
+    pub name: &'static str,
+    /// `var<…>` in WGSL.
+    access: &'static str,
+    /// Its type in WGSL.
+    wgsl: &'static str,
+    /// What it holds.
+    doc: &'static [&'static str],
+    /// What it holds, for people.
+    pub what: &'static str,
+    /// Whether the shader has it.
+    pub holds: fn(&Features) -> bool,
+    /// What the scene puts into it; None where a dispatch does.
+    pub contents: Option<fn(&Packed) -> Contents<'_>>,
+}
+
+/// The number of the job's binding.
+pub const JOB: u32 = 0;
+/// The number of the pixels' binding.
+pub const PIXELS: u32 = 1;
+/// The number of the binding of the samples' offsets.
+pub const OFFSETS: u32 = 16;
+
+/// What a buffer of the scene holds.
+pub type Contents<'a> = Box<dyn Elements + 'a>;
+
+/// The elements of a buffer.
+pub trait Elements {
+    /// How they are uploaded.
+    fn bytes(&self) -> &[u8];
+
+    /// Whether all their numbers are of moderate size, as error bounds ask.
+    fn fit(&self) -> bool;
+
+    /// A line for the whole and one for each, if there are any.
+    fn describe(&self, name: &str, text: &mut String);
+}
+
+/// Elements of one type.
+struct List<'a, T: Clone>(Cow<'a, [T]>, fn(&T) -> bool);
+
+impl<T: Pod + Debug> Elements for List<'_, T> {
+    fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.0)
+    }
+
+    fn fit(&self) -> bool {
+        self.0.iter().all(self.1)
+    }
+
+    fn describe(&self, name: &str, text: &mut String) {
+        if self.0.is_empty() {
+            return;
+        }
+        let (records, size) = (self.0.len(), size_of::<T>());
+        let bytes = records * size;
+        writeln!(text, "{name}: {records} records of {size} bytes, {bytes} in all").unwrap_or_default();
+        for (i, record) in self.0.iter().enumerate() {
+            writeln!(text, "  {i}: {record:?}").unwrap_or_default();
+        }
+    }
+}
+
+fn records<'a, T: Record>(records: impl Into<Cow<'a, [T]>>) -> Contents<'a> {
+    Box::new(List(records.into(), T::fits))
+}
+
+fn words<'a>(words: impl Into<Cow<'a, [u32]>>) -> Contents<'a> {
+    Box::new(List(words.into(), |_| true))
+}
+
+/// Records that only lit scenes have.
+fn of_lit<T: Record>(packed: &Packed, of: fn(&Lit) -> &Vec<T>) -> Contents<'_> {
+    records(packed.lit.as_ref().map_or(&[][..], |lit| of(lit)))
+}
+
+fn objects(packed: &Packed) -> Contents<'_> {
+    // The tables of indices stand behind the objects, in the field `kind`.
+    let rows = packed.tables.words.iter().map(|&kind| Object {
+        kind,
+        ..Object::zeroed()
+    });
+    let unlit = packed.lit.is_none();
+    let objects = packed.objects.iter().copied().chain(rows);
+    records(objects.filter(|_| unlit).collect::<Vec<_>>())
+}
+
+fn lit_objects(packed: &Packed) -> Contents<'_> {
+    let rows = packed.tables.words.iter().map(|&kind| LitObject {
+        kind,
+        ..LitObject::zeroed()
+    });
+    let lit = packed.lit.iter();
+    records(lit.flat_map(|lit| lit.objects.iter().copied().chain(rows.clone())).collect::<Vec<_>>())
+}
+
+const READ: &str = "storage, read";
+const WRITE: &str = "storage, read_write";
+
+macro_rules! bindings {
+    ($($(#[doc = $doc:literal])* $number:expr, $name:literal, $access:expr, $wgsl:literal, $what:literal, $holds:expr, $contents:expr;)+) => {
+        /// All bindings.
+        pub const BINDINGS: &[Binding] = &[$(Binding {
+            number: $number,
+            name: $name,
+            access: $access,
+            wgsl: $wgsl,
+            doc: &[$($doc),*],
+            what: $what,
+            holds: $holds,
+            contents: $contents,
+        }),+];
+    };
+}
+
+fn four_words(features: &Features) -> bool {
+    features.contains(&Feature::Values) || features.contains(&Feature::Quad)
+}
+
+bindings! {
+    JOB, "job", "uniform", "Job", "job", |_| true, None;
+    /// Red, green, blue as f32 (255 is a full byte), then the packed bytes: red, green, blue from the lowest byte up, and in
+    /// the highest UNDECIDED where the CPU has to decide, else 0.
+    PIXELS, "pixels", WRITE, "array<vec4u>", "pixels", |f| f.contains(&Feature::Values), None;
+    /// Packed bytes of four pixels side by side, rows filled up: red, green, blue from the lowest byte up, and in the highest
+    /// UNDECIDED where the CPU has to decide, else 0.
+    PIXELS, "pixels", WRITE, "array<vec4u>", "pixels",
+        |f| f.contains(&Feature::Quad) && !f.contains(&Feature::Values), None;
+    /// The words hold red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide.
+    PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !four_words(f), None;
+    /// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
+    PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !four_words(f), None;
+    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
+    2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
+    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
+    2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
+    3, "planes", READ, "array<Plane>", "planes",
+        |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
+    4, "rectangles", READ, "array<Rectangle>", "finite planes",
+        |f| f.contains(&Feature::RectangleLoop), Some(|p| records(&p.rectangles));
+    5, "spheres", READ, "array<Sphere>", "spheres",
+        |f| f.contains(&Feature::SphereBuffer) && !f.contains(&Feature::SpherePoint), Some(|p| records(&p.spheres));
+    5, "spheres", READ, "array<SphereAndHit>", "spheres",
+        |f| f.contains(&Feature::SpherePoint), Some(|p| records(p.sphere_records()));
+    /// Where the list of each tile of the screen starts here, by rows from the bottom left, and where the last one ends; then
+    /// the lists: indices into `spheres`, the nearest first.
+    6, "tiles", READ, "array<u32>", "lists of spheres by tiles of the screen",
+        |f| f.contains(&Feature::Tiles), Some(|p| words(p.tile_lists()));
+    7, "bvh", READ, "array<BvhNode>", "tree nodes", |f| f.contains(&Feature::Bvh), Some(|p| records(&p.bvh));
+    8, "tiled_planes", READ, "array<Tiled>", "tiled planes",
+        |f| f.contains(&Feature::Tiled), Some(|p| records(&p.tiled_planes));
+    9, "pplanes", READ, "array<Pplane>", "procedural planes",
+        |f| f.contains(&Feature::Pplane), Some(|p| records(&p.pplanes));
+    10, "texplanes", READ, "array<Texplane>", "texplanes",
+        |f| f.contains(&Feature::Textured), Some(|p| records(&p.texplanes));
+    /// Red, green, blue from the lowest byte up; all textures one after the other, bottom rows first.
+    11, "texels", READ, "array<u32>", "texels", |f| f.contains(&Feature::Textured), Some(|p| words(&p.texels));
+    12, "materials", READ, "array<Material>", "materials",
+        |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.materials));
+    13, "lights", READ, "array<Light>", "lights",
+        |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.lights));
+    /// The planes and rectangles for rays from anywhere; each object of the scene knows its place here or among the spheres.
+    14, "world_planes", READ, "array<WorldPlane>", "planes for all rays",
+        |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
+    15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",
+        |f| f.contains(&Feature::WorldSpheres), Some(|p| of_lit(p, |lit| &lit.spheres));
+    /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
+    OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;
+}
+
+/// The declarations of the bindings that these features ask for.
+pub fn declarations(features: &Features) -> String {
+    let mut text = String::new();
+    for binding in BINDINGS.iter().filter(|binding| (binding.holds)(features)) {
+        for line in binding.doc {
+            writeln!(text, "//{line}").unwrap_or_default();
+        }
+        let Binding { number, name, access, wgsl, .. } = binding;
+        writeln!(text, "@group(0) @binding({number}) var<{access}> {name}: {wgsl};").unwrap_or_default();
+    }
+    text
+}

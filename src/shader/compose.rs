@@ -1,0 +1,229 @@
+//! The WGSL for exactly one scene, put together from the files of `shaders/`, whose directives
+//! [`preprocess`](super::preprocess) resolves.
+//!
+//! `//#insert` is replaced by what is written here: records' structs, bindings, the objects of a small scene as literals, the
+//! procedural shaders used. Helpers that only some shaders call (`color_wheel`, `pplane_odd`, …) come in when a text that does
+//! come in names them.
+
+use std::fmt::Write as _;
+
+use super::binding;
+use super::constants::constants;
+use super::feature::{Feature, Features};
+use super::feature_set::FeatureSet;
+use super::kind::SurfaceKind;
+use super::pack::Packed;
+use super::preprocess::{Directives, preprocess};
+use super::record::{Layout, Record as _};
+use super::records::{self, CameraNumbers};
+
+/// Side of the square workgroup: 16×16 or 256×1 were a fifth faster than 8×8 on lavapipe.
+pub const WORKGROUP: u32 = 16;
+
+/// What the composed shader's entry point makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry {
+    /// Pixels of a picture.
+    Picture,
+    /// A single pixel before it is quantised, with its error bounds.
+    Pixel,
+    /// What primary rays meet first, and how far away.
+    FirstHit,
+}
+
+impl Entry {
+    fn file(self) -> &'static str {
+        match self {
+            Self::Picture => include_str!("../../shaders/entry/picture.wgsl"),
+            Self::Pixel => include_str!("../../shaders/entry/pixel.wgsl"),
+            Self::FirstHit => include_str!("../../shaders/entry/first_hit.wgsl"),
+        }
+    }
+}
+
+/// A file of `shaders/`, and which features ask for it.
+type File = (&'static str, fn(&Features) -> bool);
+
+macro_rules! file {
+    ($name:literal, $needed:expr) => {
+        (include_str!(concat!("../../shaders/", $name)), $needed)
+    };
+}
+
+/// The files of every entry point, in their order.
+const FILES: [File; 12] = [
+    file!("bindings.wgsl", |_| true),
+    file!("camera.wgsl", |_| true),
+    file!("jitter.wgsl", |f| f.contains(&Feature::Samples) && !f.contains(&Feature::Course)),
+    file!("plane.wgsl", |f| [Feature::Plane, Feature::Rectangle, Feature::Lit]
+        .iter()
+        .any(|feature| f.contains(feature))),
+    file!("sphere.wgsl", |f| f.contains(&Feature::Sphere) || f.contains(&Feature::LitSphere)),
+    file!("bvh.wgsl", |f| f.contains(&Feature::Bvh)),
+    file!("surface.wgsl", |f| f.contains(&Feature::AnyObject)),
+    file!("world.wgsl", |f| f.contains(&Feature::Lit)),
+    file!("light.wgsl", |f| f.contains(&Feature::Lit)),
+    file!("closest.wgsl", |f| f.contains(&Feature::AnyObject)),
+    file!("point.wgsl", |f| f.contains(&Feature::AnyObject)),
+    file!("trace.wgsl", |_| true),
+];
+
+/// Writes the shader for a packed scene.
+///
+/// # Panics
+/// If a file of `shaders/` has a directive that means nothing: a test goes through all of them.
+pub fn compose(packed: &Packed, set: &FeatureSet, entry: Entry) -> String {
+    let features = set.features();
+    let insert = |what: &str| insertion(what, packed, set, &features);
+    let mut text = String::new();
+    let needed = FILES.iter().filter(|(_, needed)| needed(&features));
+    for file in needed.map(|(file, _)| *file).chain([entry.file()]) {
+        text.push('\n');
+        resolve(file, &features, &insert, &mut text);
+    }
+    if features.contains(&Feature::Moving) {
+        // Constants of the text are fields of `Job` while the camera moves.
+        for field in CameraNumbers::LAYOUT.members() {
+            let constant = format!("CAMERA_{}", field.name.to_uppercase());
+            text = text.replace(&constant, &format!("job.camera_{}", field.name));
+        }
+    }
+    constants(packed, set, &features) + &text
+}
+
+fn resolve(
+    file: &str,
+    features: &Features,
+    insert: &dyn Fn(&str) -> Option<String>,
+    text: &mut String,
+) {
+    let directives = Directives {
+        holds: &|name| Some(features.contains(&Feature::named(name)?)),
+        insert,
+        certified: features.contains(&Feature::Certified),
+    };
+    if let Err(error) = preprocess(file, &directives, text) {
+        let first = file.lines().next().unwrap_or_default();
+        unreachable!("the file of shaders/ that begins with `{first}`: {error}");
+    }
+}
+
+/// The text for `//#insert what`.
+fn insertion(what: &str, packed: &Packed, set: &FeatureSet, features: &Features) -> Option<String> {
+    Some(match what.split(' ').collect::<Vec<_>>()[..] {
+        ["struct", name] => layout(name)?.definition(),
+        ["members", name] => layout(name)?.member_lines(""),
+        ["members", name, prefix] => layout(name)?.member_lines(prefix),
+        ["bindings"] => binding::declarations(features),
+        ["procedural"] => {
+            let shaders = set.procedural();
+            shaders.iter().map(|shader| format!("\n{}", shader.wgsl)).collect()
+        }
+        ["ambient_cases"] => {
+            let [lit, certified] = [Feature::Lit, Feature::Certified].map(|f| features.contains(&f));
+            let case = |kind: &SurfaceKind| kind.ambient_case(lit, certified);
+            set.kinds.iter().filter_map(case).collect()
+        }
+        ["unrolled"] => unrolled(packed, set),
+        ["unrolled_closest"] => unrolled_world(packed, set, |hits, object, group| {
+            format!("met_nearer(&closest, {hits}, {object}u, {group}u, range);")
+        }),
+        ["unrolled_any"] => unrolled_world(packed, set, |hits, _, _| {
+            format!("found = max(found, stands_before({hits}, range));")
+        }),
+        _ => return None,
+    })
+}
+
+fn layout(name: &str) -> Option<&'static Layout> {
+    records::LAYOUTS.iter().find(|layout| layout.name == name)
+}
+
+/// The objects of a small scene as literals, for primary rays: no load, no loop. Rectangles come first: of objects that
+/// share a surface a plane without end is the last that counts.
+fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
+    let mut text = String::new();
+    if !features.unrolled {
+        return text;
+    }
+    let mut line = |hits: &str, record: String, object: u32, index: usize, group: u32| {
+        writeln!(
+            text,
+            "    nearer(&closest, {hits}({record}, ray), {object}u, {index}u, {group}u);"
+        )
+        .unwrap_or_default();
+    };
+    for (i, r) in packed.rectangles.iter().enumerate() {
+        line("rectangle_hits", r.literal(), r.object, i, r.group);
+    }
+    for (i, p) in packed.planes.iter().enumerate() {
+        line("plane_hits", p.literal(), p.object, i, p.group);
+    }
+    for (i, s) in packed.spheres.iter().enumerate() {
+        line("sphere_hits", s.literal(), s.object, i, 0);
+    }
+    text
+}
+
+/// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function, with
+/// the object and its group.
+fn unrolled_world(
+    packed: &Packed,
+    features: &FeatureSet,
+    statement: impl Fn(&str, u32, u32) -> String,
+) -> String {
+    let mut text = String::new();
+    let (true, Some(lit)) = (features.unrolled, &packed.lit) else {
+        return text;
+    };
+    let mut line = |call: String, object: u32, group: u32| {
+        writeln!(text, "    {}", statement(&call, object, group)).unwrap_or_default();
+    };
+    for p in &lit.planes {
+        let call = format!("plane_hits_from({}, beam, range)", p.literal());
+        line(call, p.object, p.group);
+    }
+    for s in &lit.spheres {
+        let call = format!("sphere_hits_from({}, beam, range)", s.literal());
+        line(call, s.object, s.group);
+    }
+    text
+}
+
+/// lavapipe ends every loop, without a word, once the loops of an invocation have gone round 65,535 times together; and
+/// counts for all invocations that are lanes of one vector, as long as any of them goes round.
+const LOOP_LIMIT: usize = 65_535;
+
+/// Most iterations of the loops outside the tiles, for one primary ray. The shader counts those of the others.
+pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+
+    /// Directives are checked in parts that are left out too, so one scene is enough.
+    #[test]
+    fn every_directive_of_every_file_means_something() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/notes/walls.txt");
+        let scene = crate::scene::load(path.as_ref()).unwrap();
+        let packed = Packed::new(&scene, &Settings::default());
+        let set = FeatureSet::new(&packed, &Settings::default(), 1);
+        let features = set.features();
+        let entries = [Entry::Picture, Entry::Pixel, Entry::FirstHit].map(Entry::file);
+        let mut directives = 0;
+        for file in FILES.iter().map(|(file, _)| *file).chain(entries) {
+            let insert = |what: &str| insertion(what, &packed, &set, &features);
+            resolve(file, &features, &insert, &mut String::new());
+            directives += file.matches("//#").count();
+        }
+        assert!(directives > 300, "{directives}");
+    }
+
+    #[test]
+    #[should_panic(expected = "there is no such feature")]
+    fn a_misspelt_feature_does_not_drop_what_it_guards() {
+        let file = "fn f() {\n//#if certifed\n    doubt = true;\n//#end\n}\n";
+        resolve(file, &Features::from([Feature::Certified]), &|_| None, &mut String::new());
+    }
+}

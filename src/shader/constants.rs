@@ -1,0 +1,122 @@
+//! The constants that the shader's text refers to by name: the camera, counts, limits, and what error bounds need.
+
+use super::bounds;
+use super::compose::WORKGROUP;
+use super::feature::{Feature, Features};
+use super::feature_set::{FeatureSet, PARTIAL_HEAD};
+use super::kind::SurfaceKind;
+use super::literal::literal;
+use super::pack::Packed;
+use super::record::Record as _;
+
+/// Most rays that wait while another is followed; a pixel that needs more is handed to the CPU.
+const STACK: usize = 8;
+
+/// Of a pixel that the GPU does not decide, samples off by more than this (255 is a full byte) are left to the CPU too: what
+/// they leave open would cost all others. Tried from 1/1000 to 1: around 1/8 the CPU has the fewest samples to compute.
+const FINE: f32 = 0.125;
+
+/// The numbers that the text refers to by name.
+pub(super) fn constants(packed: &Packed, set: &FeatureSet, features: &Features) -> String {
+    let mut lines = vec![format!("const WORKGROUP = {WORKGROUP};")];
+    if features.contains(&Feature::AnyObject) {
+        if !features.contains(&Feature::Moving) {
+            lines.extend(camera(packed, features));
+        }
+        lines.extend(error_constants(packed, features));
+    }
+    lines.extend(counts(packed, set, features));
+    if let (Some(lit), true) = (set.lit, features.contains(&Feature::Branches)) {
+        lines.push(format!("const MAX_PATH = {};", literal(lit.max_path)));
+        lines.push(format!("const MAX_RAYS = {}u;", lit.max_rays));
+    }
+    for kind in set.kinds.iter().filter(|kind| **kind != SurfaceKind::Plain) {
+        lines.push(format!("const {} = {}u;", kind.name(), kind.code()));
+    }
+    if features.contains(&Feature::Partial) {
+        lines.push(format!("const FINE = {};", literal(FINE)));
+    }
+    lines.join("\n") + "\n"
+}
+
+/// The camera, where it does not move.
+fn camera(packed: &Packed, features: &Features) -> Vec<String> {
+    let numbers = packed.camera.numbers.literals().into_iter();
+    numbers
+        // Lengths in world units matter to lights only.
+        .filter(|(name, _)| *name != "unit" || features.contains(&Feature::Lit))
+        .map(|(name, value)| format!("const CAMERA_{} = {value};", name.to_uppercase()))
+        .collect()
+}
+
+/// How many there are of what, and how many rounds their loops take.
+fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String> {
+    let has = |feature: Feature| features.contains(&feature);
+    let mut counts = vec![
+        (Feature::PlaneLoop, "PLANES", packed.planes.len()),
+        (Feature::RectangleLoop, "RECTANGLES", packed.rectangles.len()),
+        (Feature::SphereLoop, "SPHERES", packed.spheres.len()),
+        (Feature::Tables, "TABLES", packed.objects.len()),
+        (Feature::Tables, "COLUMNS", packed.tables.columns as usize),
+        (Feature::Bvh, "BVH_DEPTH", packed.bvh_depth),
+        (Feature::Samples, "SAMPLES", set.samples as usize),
+    ];
+    if let Some(tiles) = &packed.tiles {
+        counts.extend([
+            (Feature::Tiles, "TILE_WIDTH", tiles.sides[0] as usize),
+            (Feature::Tiles, "TILE_HEIGHT", tiles.sides[1] as usize),
+            (Feature::Tiles, "TILE_COLUMNS", tiles.count[0] as usize),
+        ]);
+    }
+    let words = set.partial_words();
+    // The last round of each of up to four loops only finds its end.
+    let primary_steps = packed.loop_iterations() + 4;
+    counts.extend([
+        (Feature::Partial, "PARTIAL_WORDS", words as usize),
+        (Feature::Partial, "SUMMED_WORDS", words.saturating_sub(PARTIAL_HEAD) as usize),
+        (Feature::Counted, "LANES", set.lanes as usize),
+        (Feature::Counted, "PRIMARY_STEPS", if set.unrolled { 0 } else { primary_steps }),
+    ]);
+    if let Some(lit) = &packed.lit {
+        // The last round of either loop only finds its end.
+        let steps = lit.loop_iterations() + 2;
+        let in_shadows = has(Feature::WorldLoop) && has(Feature::AnyHit);
+        counts.extend([
+            (Feature::Lit, "LIGHTS", lit.lights.len()),
+            (Feature::WorldLoop, "WORLD_STEPS", steps),
+            (Feature::Lit, "SHADOW_STEPS", if in_shadows { steps } else { 0 }),
+            (Feature::WorldPlaneLoop, "WORLD_PLANES", lit.planes.len()),
+            (Feature::WorldSphereLoop, "WORLD_TREE", lit.in_tree),
+            (Feature::WorldSphereLoop, "WORLD_SPHERES", lit.spheres.len()),
+            (Feature::Stack, "STACK", STACK),
+        ]);
+    }
+    let counts = counts.into_iter().filter(|(feature, ..)| has(*feature));
+    counts.map(|(_, name, value)| format!("const {name} = {value}u;")).collect()
+}
+
+/// What the error bounds in the shader refer to by name.
+fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
+    let line = |name: &str, value: f64| format!("const {name} = {};", literal(bounds::up(value)));
+    if !features.contains(&Feature::Certified) {
+        // Fast pictures keep away from 0 too where they take a root.
+        return vec![line("TINY_SQUARE", bounds::TINY_SQUARE)];
+    }
+    let camera = &packed.camera;
+    let for_spread = |roundings: f64| roundings * f64::from(camera.spread) * bounds::U;
+    let brightest = (0.9 / f64::from(packed.dark)).min(f64::from(f32::MAX));
+    let named = bounds::NAMED.iter().map(|(name, value)| line(name, *value));
+    let mut lines: Vec<String> = named.collect();
+    lines.extend([
+        line("W_ERROR", f64::from(camera.w_error)),
+        line("LENGTH_ERROR", for_spread(bounds::LENGTH_ROUNDINGS)),
+        line("DIR_ERROR", for_spread(bounds::DIR_ROUNDINGS)),
+        line("VALUE_ERROR", for_spread(bounds::VALUE_ROUNDINGS)),
+        format!("const DARK = {};", literal(packed.dark)),
+        line("BRIGHT", brightest),
+    ]);
+    if features.contains(&Feature::Bvh) {
+        lines.push(line("BVH_SIZE", f64::from(packed.tree_size)));
+    }
+    lines
+}

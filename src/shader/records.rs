@@ -1,0 +1,327 @@
+//! The GPU's records, each a list of fields: see [`record`](super::record) for all that follows from it.
+
+use super::record::{Pad, records};
+
+records! {
+    /// An object of a scene without lights.
+    Object as "Object" {
+        /// Ambient reflectivity of the material.
+        ambient: [f32; 3],
+        /// [`Kind`](super::Kind) in the low byte, the index of its record above.
+        kind: u32,
+    }
+
+    /// A plane as primary rays see it, over the pixel (X, Y) from the anchor of the camera.
+    Plane as "Plane" {
+        /// 1/s over (X, Y, 1), the pixel from the camera's anchor.
+        inverse: [f32; 3],
+        /// Index of the object.
+        object: u32,
+        /// ≥ 0 over (X, Y, 1) where the hit counts.
+        front: [f32; 3],
+        /// Number of the surface, where others share it; else 0.
+        group: u32,
+        /// Bound of the error of 1/s.
+        inverse_error: f32,
+        /// Bound of the error of `front`.
+        front_error: f32,
+        pad: Pad<2>,
+    }
+
+    /// A rectangle as primary rays see it. A hit is inside where the forms of all four sides are ≥ 0: p_i/s and
+    /// (d_i − p_i)/s, where p are the coordinates on the rectangle and d its sides, each up to a positive factor.
+    Rectangle as "Rectangle" {
+        /// 1/s over (X, Y, 1).
+        inverse: [f32; 3],
+        /// Index of the object.
+        object: u32,
+        /// ≥ 0 over (X, Y, 1) where the hit counts.
+        front: [f32; 3],
+        /// As in a [`Plane`].
+        group: u32,
+        /// ≥ 0 over (X, Y, 1) on the inner side of the first side, and so on.
+        side_0: [f32; 3],
+        /// Bound of the error of 1/s.
+        inverse_error: f32,
+        /// The side next to it.
+        side_1: [f32; 3],
+        /// Bound of the error of `front`.
+        front_error: f32,
+        /// The side opposite the first.
+        side_2: [f32; 3],
+        pad_0: Pad<1>,
+        /// The side opposite the second.
+        side_3: [f32; 3],
+        pad_1: Pad<1>,
+        /// Bounds of the errors of the four sides.
+        side_errors: [f32; 4],
+    }
+
+    /// A sphere as primary rays see it, over the pixel (X, Y) from its anchor: 1/s = gain·(along + √disc) for the nearer
+    /// hit, along linear and disc quadratic. Where the outline is an ellipse the anchor is a pixel next to its middle.
+    Sphere as "Sphere" {
+        /// e·W over (X, Y, 1), the pixel from `anchor`.
+        along: [f32; 3],
+        /// |C|/(|C|² − r²).
+        gain: f32,
+        /// The discriminant's coefficients of X², XY, Y².
+        square: [f32; 3],
+        /// Index of the object.
+        object: u32,
+        /// The discriminant's coefficients of X, Y, 1.
+        affine: [f32; 3],
+        /// Bound of the error of `along`.
+        along_error: f32,
+        /// Where X and Y start.
+        anchor: [i32; 2],
+        /// Bound of the error of the discriminant.
+        disc_error: f32,
+        /// 1/s is no larger; where spheres are many.
+        #[any_size = "it is only compared"]
+        most: f32,
+    }
+
+    /// Where a sphere that a primary ray meets is met: (H − C)/(r·s) = forms·(X, Y, 1) − center·√disc.
+    SphereHit as "SphereHit" {
+        /// First component over (X, Y, 1).
+        form_x: [f32; 3],
+        /// Bound of the errors of the forms, as a vector.
+        form_error: f32,
+        /// Second component.
+        form_y: [f32; 3],
+        /// gain·|C|/r.
+        center_size: f32,
+        /// Third component.
+        form_z: [f32; 3],
+        pad_0: Pad<1>,
+        /// gain·C/r.
+        center: [f32; 3],
+        pad_1: Pad<1>,
+    }
+
+    /// A sphere with what is needed where its hits are looked at: in one buffer, as some drivers allow only ten.
+    SphereAndHit as "SphereAndHit" {
+        /// The sphere.
+        sphere: Sphere,
+        /// Where it is hit.
+        hit: SphereHit,
+    }
+
+    /// A box of the tree over many spheres.
+    BvhNode as "BvhNode" {
+        /// Least corner of the box.
+        min: [f32; 3],
+        /// First sphere of a leaf, or first child.
+        first: u32,
+        /// Greatest corner of the box.
+        max: [f32; 3],
+        /// Spheres of a leaf; 0 for an inner node.
+        count: u32,
+    }
+
+    /// The tiles of a `tiled_plane`: their indices along both directions are floor(row_i·P + fraction_i), up to `parity`.
+    TiledPlane as "Tiled" {
+        /// Tiles a unit along the first direction, times the direction.
+        row_0: [f32; 3],
+        /// Fraction of the index at the viewpoint.
+        fraction_0: f32,
+        /// The same for the second direction.
+        row_1: [f32; 3],
+        /// The same for the second direction.
+        fraction_1: f32,
+        /// Ambient reflectivity of the other material.
+        altmaterial: [f32; 3],
+        /// Index of the other material.
+        altindex: u32,
+        /// The parities together: odd sums have the other material.
+        parity: f32,
+        pad_0: Pad<1>,
+        /// Lengths of the rows.
+        spread: [f32; 2],
+        /// Bounds of the indices' errors, but for what the position's error adds.
+        errors: [f32; 2],
+        pad_1: Pad<2>,
+    }
+
+    /// What a `pplane` shader is told: the indices floor(2·H + 1000) are floor(P·per_unit + fraction), up to `parity`.
+    ProceduralPlane as "Pplane" {
+        /// Tiles a unit, along x, y, z.
+        per_unit: [f32; 3],
+        /// Bound of the indices' errors, but for what the position's error adds.
+        index_error: f32,
+        /// Fraction of the index at the viewpoint.
+        fraction: [f32; 3],
+        /// The same for `from_point`.
+        from_point_error: f32,
+        /// Parities, 0 or 1.
+        parity: [f32; 3],
+        pad: Pad<1>,
+        /// Factors of x and y, then what is subtracted from them.
+        from_point: [f32; 4],
+    }
+
+    /// The rectangle of pixels that one dispatch makes.
+    Job as "Job" {
+        /// Column and row (from the bottom) of the top left pixel.
+        first: [u32; 2],
+        /// Columns and rows.
+        size: [u32; 2],
+        /// 0, which only the host knows.
+        zero: u32,
+        /// Records that the list of pixels with doubtful samples has room for; 0 where there is no list.
+        room: u32,
+    }
+
+    /// The camera. Its numbers stand in the text of the shader, or behind `Job` while it moves.
+    CameraNumbers as "CameraNumbers" {
+        /// Pixel next to the viewpoint.
+        anchor: [i32; 2],
+        /// From one pixel to the next.
+        step: [f32; 2],
+        /// W.x and W.y at the anchor.
+        offset: [f32; 2],
+        /// −W.z.
+        distance: f32,
+        /// 255 / 2^scale.
+        gain: f32,
+        /// 1 / 2^scale.
+        unit: f32,
+        pad: Pad<1>,
+    }
+
+    /// The picture on a `texplane`: texel column and row are floor(row_i·P − origin_i).
+    Texplane as "Texplane" {
+        /// Texels a unit along the first side, times its direction.
+        row_0: [f32; 3],
+        /// What is subtracted.
+        origin_0: f32,
+        /// The same for the second side.
+        row_1: [f32; 3],
+        /// The same for the second side.
+        origin_1: f32,
+        /// Columns and rows of the texture.
+        size: [u32; 2],
+        /// Its first texel.
+        first: u32,
+        /// 1 where the picture repeats.
+        repeats: u32,
+        /// Lengths of the rows.
+        spread: [f32; 2],
+        /// Bounds of the indices' errors, but for what the position's error adds.
+        errors: [f32; 2],
+    }
+
+    /// An object of a scene with lights.
+    LitObject as "Object" {
+        /// Index of the material.
+        material: u32,
+        /// As in [`Object`].
+        kind: u32,
+        /// Number of the surface that it is or is part of.
+        group: u32,
+        /// Index into the planes, or into the spheres with the highest bit set.
+        place: u32,
+    }
+
+    /// A material of a scene with lights.
+    Material as "Material" {
+        /// Ambient reflectivity.
+        ambient: [f32; 3],
+        /// Share of light that goes through.
+        transparency: f32,
+        /// Diffuse reflectivity.
+        diffuse: [f32; 3],
+        /// Exponent of the glint, 0 for none.
+        #[any_size = "it is only compared with 0 where pixels are certified"]
+        shininess: f32,
+        /// Specular reflectivity.
+        specular: [f32; 3],
+        /// The exponent if it is a whole number from 1 to 1023, else 0.
+        power: u32,
+        /// What tints light that goes through.
+        tint: [f32; 3],
+        /// 1 − transparency.
+        kept: f32,
+    }
+
+    /// A light.
+    Light as "Light" {
+        /// From the viewpoint.
+        location: [f32; 3],
+        /// Cosine of the half angle; −2 for a light without a cone.
+        cosine: f32,
+        /// How bright it is.
+        emissivity: [f32; 3],
+        /// Length of `location`.
+        size: f32,
+        /// A spotlight's axis.
+        axis: [f32; 3],
+        pad: Pad<1>,
+    }
+
+    /// A plane or rectangle for rays from anywhere; positions are from the viewpoint.
+    WorldPlane as "WorldPlane" {
+        /// Unit normal.
+        normal: [f32; 3],
+        /// normal·P on the plane.
+        offset: f32,
+        /// Factors of a hit point: 0 for the plane's own coordinate, else 1.
+        keep: [f32; 3],
+        /// Number of the surface.
+        group: u32,
+        /// The plane's own coordinate, else 0.
+        own: [f32; 3],
+        /// Index of the object.
+        object: u32,
+        /// Direction of the first side.
+        row_0: [f32; 3],
+        /// What is subtracted.
+        origin_0: f32,
+        /// Direction of the second side.
+        row_1: [f32; 3],
+        /// What is subtracted.
+        origin_1: f32,
+        /// Lengths of the sides.
+        lengths: [f32; 2],
+        /// Bit i: light i lies in the plane.
+        level: u32,
+        /// 1 for a rectangle.
+        bounded: u32,
+        /// A hit counts only up to this z.
+        #[any_size = "the largest f32 stands for no limit, and it is only compared"]
+        highest: f32,
+        /// Bound of the errors of the coordinates on the rectangle, but for what the position's error adds.
+        sides_error: f32,
+        pad: Pad<2>,
+    }
+
+    /// A sphere for rays from anywhere; its center is from the viewpoint.
+    WorldSphere as "WorldSphere" {
+        /// From the viewpoint.
+        center: [f32; 3],
+        /// Its radius.
+        radius: f32,
+        /// Number of the surface.
+        group: u32,
+        /// Index of the object.
+        object: u32,
+        /// Bit i: light i lies on the sphere.
+        level: u32,
+        /// Length of `center`.
+        size: f32,
+        /// 1 / radius.
+        inverse_radius: f32,
+        pad: Pad<3>,
+    }
+}
+
+/// What the shader is told of the camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PackedCamera {
+    /// Its numbers, which go into the text of the shader as a rule.
+    pub numbers: CameraNumbers,
+    /// Bound of the error of W, as a vector.
+    pub w_error: f32,
+    /// κ ≥ 1 (docs/NUMERICS.md): the terms that W·W is a sum of, over W·W.
+    pub spread: f32,
+}
