@@ -9,8 +9,8 @@ use std::time::Instant;
 use bytemuck::Zeroable;
 
 use crate::gpu::GpuError;
-use crate::shader::compose::WORKGROUP;
 use crate::gpu::device::Gpu;
+use crate::shader::compose::WORKGROUP;
 use crate::shader::records::Job;
 
 /// Pixels of the first dispatch, whose speed is not known yet.

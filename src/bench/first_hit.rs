@@ -5,13 +5,13 @@
 use super::dispatch::Runner;
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
-use crate::shader::compose::{Entry, compose};
 use crate::gpu::device::Gpu;
-use crate::shader::feature_set::FeatureSet;
-use crate::shader::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::prepare::exact::two_to;
 use crate::settings::Settings;
+use crate::shader::compose::{Entry, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 
 /// The shader of a picture with the other entry point, and its features; none where there is nothing to hit.
 #[must_use]

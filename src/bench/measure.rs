@@ -16,9 +16,6 @@ use crate::certify::Stage;
 use crate::cpu::camera::camera_setpix;
 use crate::cpu::trace::{Unwatched, ray_trace};
 use crate::gpu::device::Gpu;
-use crate::shader::compose::{Entry, compose};
-use crate::shader::feature_set::FeatureSet;
-use crate::shader::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands};
 use crate::image::Picture;
@@ -26,6 +23,9 @@ use crate::jitter::Jitter;
 use crate::prepare::Prepared;
 use crate::render::{self, Backend, Precision, Settings, render};
 use crate::scene::Scene;
+use crate::shader::compose::{Entry, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 
 /// A scene at its final size, and how it is measured.
 pub struct Subject<'a> {

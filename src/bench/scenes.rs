@@ -10,10 +10,10 @@ use super::ways::Way;
 use super::{Report, SceneReport, Seconds, WayReport, truth};
 use crate::gpu;
 use crate::gpu::device::Gpu;
-use crate::shader::pack::Packed;
 use crate::image::Picture;
 use crate::scene::{Scene, Shape};
 use crate::settings::Settings;
+use crate::shader::pack::Packed;
 
 /// What is measured.
 #[derive(Debug, Clone)]

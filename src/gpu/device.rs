@@ -8,6 +8,8 @@ use serde::Serialize;
 use super::GpuError;
 use super::selftest::{self, Outcome};
 use super::turn::Turn;
+use crate::shader::compose::WORKGROUP;
+use crate::shader::feature_set::SOFTWARE_LANES;
 
 /// An open device.
 #[derive(Debug)]

@@ -36,12 +36,7 @@ pub struct Pipeline {
 
 impl Pipeline {
     /// Compiles `wgsl`, composed for `packed` with the features of `set`, and uploads the scene.
-    pub fn new(
-        gpu: &Gpu,
-        packed: &Packed,
-        set: &FeatureSet,
-        wgsl: &str,
-    ) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, packed: &Packed, set: &FeatureSet, wgsl: &str) -> Result<Self, GpuError> {
         Self::with(gpu, packed, set, || gpu.compile(wgsl, "main"))
     }
 
@@ -74,11 +69,7 @@ impl Pipeline {
             pipeline,
             across: if has(Feature::Quad) { QUAD } else { 1 },
             pixel_bytes: if set.values { 16 } else { 4 },
-            offsets: if has(Feature::Course) {
-                set.samples
-            } else {
-                0
-            },
+            offsets: if has(Feature::Course) { set.samples } else { 0 },
             partial_words: set.partial_words(),
             camera: has(Feature::Moving).then_some(packed.camera.numbers),
             seconds: [compile_seconds, upload_seconds],

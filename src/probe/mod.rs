@@ -28,12 +28,12 @@ use crate::cpu::trace::Limits;
 use crate::frame::PixelFault;
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
-use crate::shader::pack::Packed;
 use crate::gpu::single::{Single, SinglePipeline};
 use crate::jitter::{Jitter, Sampling};
 use crate::prepare::View;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::shader::pack::Packed;
 
 pub use facts::Facts;
 pub use verdict::Verdict;

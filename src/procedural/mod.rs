@@ -74,7 +74,8 @@ impl Family {
 pub fn with_called(family: Family, used: BTreeSet<u32>) -> Vec<&'static Shader> {
     let table = family.shaders();
     let mut chosen: BTreeSet<usize> = used.into_iter().map(|n| n as usize).collect();
-    let calls = |a: usize, b: usize| a != b && table[a].wgsl.contains(&format!("{}(", table[b].name));
+    let calls =
+        |a: usize, b: usize| a != b && table[a].wgsl.contains(&format!("{}(", table[b].name));
     loop {
         let called: Vec<usize> = (0..table.len())
             .filter(|&i| !chosen.contains(&i) && chosen.iter().any(|&c| calls(c, i)))

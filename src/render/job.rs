@@ -11,14 +11,14 @@ use crate::certify::lanes::Lanes;
 use crate::certify::pixels::{Tracer, Wanted};
 use crate::certify::{Tally, trust};
 use crate::frame::Band;
-use crate::shader::compose::{Entry, LOOP_ITERATIONS, compose};
-use crate::shader::feature_set::FeatureSet;
-use crate::shader::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands};
 use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::settings::Precision;
+use crate::shader::compose::{Entry, LOOP_ITERATIONS, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 
 /// Everything that a tracer needs to know.
 pub(super) struct Job<'a> {

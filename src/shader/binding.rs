@@ -71,7 +71,11 @@ impl<T: Pod + Debug> Elements for List<'_, T> {
         }
         let (records, size) = (self.0.len(), size_of::<T>());
         let bytes = records * size;
-        writeln!(text, "{name}: {records} records of {size} bytes, {bytes} in all").unwrap_or_default();
+        writeln!(
+            text,
+            "{name}: {records} records of {size} bytes, {bytes} in all"
+        )
+        .unwrap_or_default();
         for (i, record) in self.0.iter().enumerate() {
             writeln!(text, "  {i}: {record:?}").unwrap_or_default();
         }
@@ -108,14 +112,17 @@ fn lit_objects(packed: &Packed) -> Contents<'_> {
         ..LitObject::zeroed()
     });
     let lit = packed.lit.iter();
-    records(lit.flat_map(|lit| lit.objects.iter().copied().chain(rows.clone())).collect::<Vec<_>>())
+    records(
+        lit.flat_map(|lit| lit.objects.iter().copied().chain(rows.clone()))
+            .collect::<Vec<_>>(),
+    )
 }
 
 const READ: &str = "storage, read";
 const WRITE: &str = "storage, read_write";
 
 macro_rules! bindings {
-    ($($(#[doc = $doc:literal])* $number:expr, $name:literal, $access:expr, $wgsl:literal, $what:literal, $holds:expr, $contents:expr;)+) => {
+    ($($(#[doc = $doc:literal])* binding $number:expr, $name:literal, $access:expr, $wgsl:literal, $what:literal, $holds:expr, $contents:expr;)+) => {
         /// All bindings.
         pub const BINDINGS: &[Binding] = &[$(Binding {
             number: $number,
@@ -135,54 +142,54 @@ fn four_words(features: &Features) -> bool {
 }
 
 bindings! {
-    JOB, "job", "uniform", "Job", "job", |_| true, None;
+    binding JOB, "job", "uniform", "Job", "job", |_| true, None;
     /// Red, green, blue as f32 (255 is a full byte), then the packed bytes: red, green, blue from the lowest byte up, and in
     /// the highest UNDECIDED where the CPU has to decide, else 0.
-    PIXELS, "pixels", WRITE, "array<vec4u>", "pixels", |f| f.contains(&Feature::Values), None;
+    binding PIXELS, "pixels", WRITE, "array<vec4u>", "pixels", |f| f.contains(&Feature::Values), None;
     /// Packed bytes of four pixels side by side, rows filled up: red, green, blue from the lowest byte up, and in the highest
     /// UNDECIDED where the CPU has to decide, else 0.
-    PIXELS, "pixels", WRITE, "array<vec4u>", "pixels",
+    binding PIXELS, "pixels", WRITE, "array<vec4u>", "pixels",
         |f| f.contains(&Feature::Quad) && !f.contains(&Feature::Values), None;
     /// The words hold red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide.
-    PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !four_words(f), None;
+    binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !four_words(f), None;
     /// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
-    PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !four_words(f), None;
+    binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !four_words(f), None;
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
-    2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
+    binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
-    2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
-    3, "planes", READ, "array<Plane>", "planes",
+    binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
+    binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
-    4, "rectangles", READ, "array<Rectangle>", "finite planes",
+    binding 4, "rectangles", READ, "array<Rectangle>", "finite planes",
         |f| f.contains(&Feature::RectangleLoop), Some(|p| records(&p.rectangles));
-    5, "spheres", READ, "array<Sphere>", "spheres",
+    binding 5, "spheres", READ, "array<Sphere>", "spheres",
         |f| f.contains(&Feature::SphereBuffer) && !f.contains(&Feature::SpherePoint), Some(|p| records(&p.spheres));
-    5, "spheres", READ, "array<SphereAndHit>", "spheres",
+    binding 5, "spheres", READ, "array<SphereAndHit>", "spheres",
         |f| f.contains(&Feature::SpherePoint), Some(|p| records(p.sphere_records()));
     /// Where the list of each tile of the screen starts here, by rows from the bottom left, and where the last one ends; then
     /// the lists: indices into `spheres`, the nearest first.
-    6, "tiles", READ, "array<u32>", "lists of spheres by tiles of the screen",
+    binding 6, "tiles", READ, "array<u32>", "lists of spheres by tiles of the screen",
         |f| f.contains(&Feature::Tiles), Some(|p| words(p.tile_lists()));
-    7, "bvh", READ, "array<BvhNode>", "tree nodes", |f| f.contains(&Feature::Bvh), Some(|p| records(&p.bvh));
-    8, "tiled_planes", READ, "array<Tiled>", "tiled planes",
+    binding 7, "bvh", READ, "array<BvhNode>", "tree nodes", |f| f.contains(&Feature::Bvh), Some(|p| records(&p.bvh));
+    binding 8, "tiled_planes", READ, "array<Tiled>", "tiled planes",
         |f| f.contains(&Feature::Tiled), Some(|p| records(&p.tiled_planes));
-    9, "pplanes", READ, "array<Pplane>", "procedural planes",
+    binding 9, "pplanes", READ, "array<Pplane>", "procedural planes",
         |f| f.contains(&Feature::Pplane), Some(|p| records(&p.pplanes));
-    10, "texplanes", READ, "array<Texplane>", "texplanes",
+    binding 10, "texplanes", READ, "array<Texplane>", "texplanes",
         |f| f.contains(&Feature::Textured), Some(|p| records(&p.texplanes));
     /// Red, green, blue from the lowest byte up; all textures one after the other, bottom rows first.
-    11, "texels", READ, "array<u32>", "texels", |f| f.contains(&Feature::Textured), Some(|p| words(&p.texels));
-    12, "materials", READ, "array<Material>", "materials",
+    binding 11, "texels", READ, "array<u32>", "texels", |f| f.contains(&Feature::Textured), Some(|p| words(&p.texels));
+    binding 12, "materials", READ, "array<Material>", "materials",
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.materials));
-    13, "lights", READ, "array<Light>", "lights",
+    binding 13, "lights", READ, "array<Light>", "lights",
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.lights));
     /// The planes and rectangles for rays from anywhere; each object of the scene knows its place here or among the spheres.
-    14, "world_planes", READ, "array<WorldPlane>", "planes for all rays",
+    binding 14, "world_planes", READ, "array<WorldPlane>", "planes for all rays",
         |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
-    15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",
+    binding 15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",
         |f| f.contains(&Feature::WorldSpheres), Some(|p| of_lit(p, |lit| &lit.spheres));
     /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
-    OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;
+    binding OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;
 }
 
 /// The declarations of the bindings that these features ask for.
@@ -192,8 +199,18 @@ pub fn declarations(features: &Features) -> String {
         for line in binding.doc {
             writeln!(text, "//{line}").unwrap_or_default();
         }
-        let Binding { number, name, access, wgsl, .. } = binding;
-        writeln!(text, "@group(0) @binding({number}) var<{access}> {name}: {wgsl};").unwrap_or_default();
+        let Binding {
+            number,
+            name,
+            access,
+            wgsl,
+            ..
+        } = binding;
+        writeln!(
+            text,
+            "@group(0) @binding({number}) var<{access}> {name}: {wgsl};"
+        )
+        .unwrap_or_default();
     }
     text
 }

@@ -51,20 +51,27 @@ macro_rules! file {
 }
 
 /// The files of every entry point, in their order.
-const FILES: [File; 12] = [
+const FILES: [File; 13] = [
     file!("bindings.wgsl", |_| true),
     file!("camera.wgsl", |_| true),
-    file!("jitter.wgsl", |f| f.contains(&Feature::Samples) && !f.contains(&Feature::Course)),
-    file!("plane.wgsl", |f| [Feature::Plane, Feature::Rectangle, Feature::Lit]
-        .iter()
-        .any(|feature| f.contains(feature))),
-    file!("sphere.wgsl", |f| f.contains(&Feature::Sphere) || f.contains(&Feature::LitSphere)),
+    file!("jitter.wgsl", |f| f.contains(&Feature::Samples)
+        && !f.contains(&Feature::Course)),
+    file!("plane.wgsl", |f| [
+        Feature::Plane,
+        Feature::Rectangle,
+        Feature::Lit
+    ]
+    .iter()
+    .any(|feature| f.contains(feature))),
+    file!("sphere.wgsl", |f| f.contains(&Feature::Sphere)
+        || f.contains(&Feature::LitSphere)),
     file!("bvh.wgsl", |f| f.contains(&Feature::Bvh)),
     file!("surface.wgsl", |f| f.contains(&Feature::AnyObject)),
     file!("world.wgsl", |f| f.contains(&Feature::Lit)),
     file!("light.wgsl", |f| f.contains(&Feature::Lit)),
     file!("closest.wgsl", |f| f.contains(&Feature::AnyObject)),
     file!("point.wgsl", |f| f.contains(&Feature::AnyObject)),
+    file!("branch.wgsl", |f| f.contains(&Feature::Branches)),
     file!("trace.wgsl", |_| true),
 ];
 
@@ -117,10 +124,14 @@ fn insertion(what: &str, packed: &Packed, set: &FeatureSet, features: &Features)
         ["bindings"] => binding::declarations(features),
         ["procedural"] => {
             let shaders = set.procedural();
-            shaders.iter().map(|shader| format!("\n{}", shader.wgsl)).collect()
+            shaders
+                .iter()
+                .map(|shader| format!("\n{}", shader.wgsl))
+                .collect()
         }
         ["ambient_cases"] => {
-            let [lit, certified] = [Feature::Lit, Feature::Certified].map(|f| features.contains(&f));
+            let [lit, certified] =
+                [Feature::Lit, Feature::Certified].map(|f| features.contains(&f));
             let case = |kind: &SurfaceKind| kind.ambient_case(lit, certified);
             set.kinds.iter().filter_map(case).collect()
         }
@@ -224,6 +235,11 @@ mod tests {
     #[should_panic(expected = "there is no such feature")]
     fn a_misspelt_feature_does_not_drop_what_it_guards() {
         let file = "fn f() {\n//#if certifed\n    doubt = true;\n//#end\n}\n";
-        resolve(file, &Features::from([Feature::Certified]), &|_| None, &mut String::new());
+        resolve(
+            file,
+            &Features::from([Feature::Certified]),
+            &|_| None,
+            &mut String::new(),
+        );
     }
 }

@@ -54,7 +54,11 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
     let has = |feature: Feature| features.contains(&feature);
     let mut counts = vec![
         (Feature::PlaneLoop, "PLANES", packed.planes.len()),
-        (Feature::RectangleLoop, "RECTANGLES", packed.rectangles.len()),
+        (
+            Feature::RectangleLoop,
+            "RECTANGLES",
+            packed.rectangles.len(),
+        ),
         (Feature::SphereLoop, "SPHERES", packed.spheres.len()),
         (Feature::Tables, "TABLES", packed.objects.len()),
         (Feature::Tables, "COLUMNS", packed.tables.columns as usize),
@@ -73,9 +77,17 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
     let primary_steps = packed.loop_iterations() + 4;
     counts.extend([
         (Feature::Partial, "PARTIAL_WORDS", words as usize),
-        (Feature::Partial, "SUMMED_WORDS", words.saturating_sub(PARTIAL_HEAD) as usize),
+        (
+            Feature::Partial,
+            "SUMMED_WORDS",
+            words.saturating_sub(PARTIAL_HEAD) as usize,
+        ),
         (Feature::Counted, "LANES", set.lanes as usize),
-        (Feature::Counted, "PRIMARY_STEPS", if set.unrolled { 0 } else { primary_steps }),
+        (
+            Feature::Counted,
+            "PRIMARY_STEPS",
+            if set.unrolled { 0 } else { primary_steps },
+        ),
     ]);
     if let Some(lit) = &packed.lit {
         // The last round of either loop only finds its end.
@@ -84,7 +96,11 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         counts.extend([
             (Feature::Lit, "LIGHTS", lit.lights.len()),
             (Feature::WorldLoop, "WORLD_STEPS", steps),
-            (Feature::Lit, "SHADOW_STEPS", if in_shadows { steps } else { 0 }),
+            (
+                Feature::Lit,
+                "SHADOW_STEPS",
+                if in_shadows { steps } else { 0 },
+            ),
             (Feature::WorldPlaneLoop, "WORLD_PLANES", lit.planes.len()),
             (Feature::WorldSphereLoop, "WORLD_TREE", lit.in_tree),
             (Feature::WorldSphereLoop, "WORLD_SPHERES", lit.spheres.len()),
@@ -92,7 +108,9 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         ]);
     }
     let counts = counts.into_iter().filter(|(feature, ..)| has(*feature));
-    counts.map(|(_, name, value)| format!("const {name} = {value}u;")).collect()
+    counts
+        .map(|(_, name, value)| format!("const {name} = {value}u;"))
+        .collect()
 }
 
 /// What the error bounds in the shader refer to by name.

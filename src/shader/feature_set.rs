@@ -231,8 +231,16 @@ impl<'a> Conditions<'a> {
             loops: !set.unrolled,
             tiled: any && set.kinds.contains(&SurfaceKind::Tiled),
             textured: any && set.kinds.contains(&SurfaceKind::Textured),
-            pplane: any && set.kinds.iter().any(|kind| matches!(kind, SurfaceKind::Pplane(_))),
-            psphere: any && set.kinds.iter().any(|kind| matches!(kind, SurfaceKind::Psphere(_))),
+            pplane: any
+                && set
+                    .kinds
+                    .iter()
+                    .any(|kind| matches!(kind, SurfaceKind::Pplane(_))),
+            psphere: any
+                && set
+                    .kinds
+                    .iter()
+                    .any(|kind| matches!(kind, SurfaceKind::Psphere(_))),
         }
     }
 
@@ -294,9 +302,7 @@ impl<'a> Conditions<'a> {
             Feature::Lit => lit,
             Feature::LitSphere => light.spheres,
             Feature::WorldPlanes => light.planes,
-            Feature::WorldSpheres => {
-                light.spheres && (loops || light.mirror || light.clear || bvh)
-            }
+            Feature::WorldSpheres => light.spheres && (loops || light.mirror || light.clear || bvh),
             Feature::Mirror => light.mirror,
             Feature::Clear => light.clear,
             Feature::Branches => light.mirror || light.clear,
@@ -320,6 +326,11 @@ impl<'a> Conditions<'a> {
 
     /// Whether a procedural shader in use names `helper`.
     fn asks(&self, helper: &str) -> bool {
-        self.any && self.set.procedural().iter().any(|shader| shader.wgsl.contains(helper))
+        self.any
+            && self
+                .set
+                .procedural()
+                .iter()
+                .any(|shader| shader.wgsl.contains(helper))
     }
 }

@@ -47,9 +47,10 @@ impl SurfaceKind {
             (Self::Pplane(shader), Family::Pplane) | (Self::Psphere(shader), Family::Psphere) => {
                 Some(shader)
             }
-            (Self::Pplane(_) | Self::Psphere(_) | Self::Plain | Self::Tiled | Self::Textured, _) => {
-                None
-            }
+            (
+                Self::Pplane(_) | Self::Psphere(_) | Self::Plain | Self::Tiled | Self::Textured,
+                _,
+            ) => None,
         }
     }
 
@@ -97,9 +98,9 @@ impl SurfaceKind {
                 .into(),
             Self::Textured => "shade.color *= texel(texplanes[record], point);".into(),
             Self::Pplane(_) => call("PlanePoint(point, shade.color, pplanes[record])"),
-            Self::Psphere(_) if certified => call(
-                "SpherePoint(point.from_center, point.from_center_error, shade.color)",
-            ),
+            Self::Psphere(_) if certified => {
+                call("SpherePoint(point.from_center, point.from_center_error, shade.color)")
+            }
             Self::Psphere(_) => call("SpherePoint(point.from_center, 0.0, shade.color)"),
         };
         Some(format!(

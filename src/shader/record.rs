@@ -10,7 +10,7 @@ use super::literal::{literal, vector};
 
 /// A type that a field of a record may have.
 pub trait Field {
-    /// Its name in WGSL; empty for [`Pad`], which WGSL leaves out by itself.
+    /// Its name in WGSL; empty for [`Pad1`] and the like, which WGSL leaves out by itself.
     const WGSL: &'static str;
 
     /// The value as a WGSL expression that means exactly it.
@@ -20,27 +20,31 @@ pub trait Field {
     fn fits(&self) -> bool;
 }
 
-/// Words that WGSL's alignment leaves unused between or behind the fields.
-#[repr(transparent)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Zeroable)]
-pub struct Pad<const WORDS: usize>([u32; WORDS]);
+macro_rules! pads {
+    ($($name:ident, $words:literal;)+) => {$(
+        /// Words that WGSL's alignment leaves unused between or behind the fields.
+        #[repr(transparent)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
+        pub struct $name([u32; $words]);
 
-impl<const WORDS: usize> Default for Pad<WORDS> {
-    fn default() -> Self {
-        Self([0; WORDS])
-    }
+        impl Field for $name {
+            const WGSL: &'static str = "";
+
+            fn literal(&self) -> String {
+                String::new()
+            }
+
+            fn fits(&self) -> bool {
+                true
+            }
+        }
+    )+};
 }
 
-impl<const WORDS: usize> Field for Pad<WORDS> {
-    const WGSL: &'static str = "";
-
-    fn literal(&self) -> String {
-        String::new()
-    }
-
-    fn fits(&self) -> bool {
-        true
-    }
+pads! {
+    Pad1, 1;
+    Pad2, 2;
+    Pad3, 3;
 }
 
 impl Field for f32 {
@@ -147,7 +151,11 @@ impl Layout {
     /// Its members in WGSL, the names with `prefix` before them.
     pub fn member_lines(&self, prefix: &str) -> String {
         let member = |field: &FieldLayout| {
-            let doc: String = field.doc.iter().map(|line| format!("    //{line}\n")).collect();
+            let doc: String = field
+                .doc
+                .iter()
+                .map(|line| format!("    //{line}\n"))
+                .collect();
             format!("{doc}    {prefix}{}: {},\n", field.name, field.wgsl)
         };
         self.members().map(member).collect()
@@ -164,7 +172,11 @@ pub trait Record: Pod + Debug {
 
     /// The record as a WGSL expression.
     fn literal(&self) -> String {
-        let values: Vec<String> = self.literals().into_iter().map(|(_, value)| value).collect();
+        let values: Vec<String> = self
+            .literals()
+            .into_iter()
+            .map(|(_, value)| value)
+            .collect();
         format!("{}({})", Self::LAYOUT.wgsl, values.join(", "))
     }
 

@@ -1,6 +1,6 @@
 //! The GPU's records, each a list of fields: see [`record`](super::record) for all that follows from it.
 
-use super::record::{Pad, records};
+use super::record::{Pad1, Pad2, Pad3, records};
 
 records! {
     /// An object of a scene without lights.
@@ -25,7 +25,8 @@ records! {
         inverse_error: f32,
         /// Bound of the error of `front`.
         front_error: f32,
-        pad: Pad<2>,
+        /// Nothing.
+        pad: Pad2,
     }
 
     /// A rectangle as primary rays see it. A hit is inside where the forms of all four sides are ≥ 0: p_i/s and
@@ -49,10 +50,12 @@ records! {
         front_error: f32,
         /// The side opposite the first.
         side_2: [f32; 3],
-        pad_0: Pad<1>,
+        /// Nothing.
+        pad_0: Pad1,
         /// The side opposite the second.
         side_3: [f32; 3],
-        pad_1: Pad<1>,
+        /// Nothing.
+        pad_1: Pad1,
         /// Bounds of the errors of the four sides.
         side_errors: [f32; 4],
     }
@@ -93,10 +96,12 @@ records! {
         center_size: f32,
         /// Third component.
         form_z: [f32; 3],
-        pad_0: Pad<1>,
+        /// Nothing.
+        pad_0: Pad1,
         /// gain·C/r.
         center: [f32; 3],
-        pad_1: Pad<1>,
+        /// Nothing.
+        pad_1: Pad1,
     }
 
     /// A sphere with what is needed where its hits are looked at: in one buffer, as some drivers allow only ten.
@@ -135,12 +140,14 @@ records! {
         altindex: u32,
         /// The parities together: odd sums have the other material.
         parity: f32,
-        pad_0: Pad<1>,
+        /// Nothing.
+        pad_0: Pad1,
         /// Lengths of the rows.
         spread: [f32; 2],
         /// Bounds of the indices' errors, but for what the position's error adds.
         errors: [f32; 2],
-        pad_1: Pad<2>,
+        /// Nothing.
+        pad_1: Pad2,
     }
 
     /// What a `pplane` shader is told: the indices floor(2·H + 1000) are floor(P·per_unit + fraction), up to `parity`.
@@ -155,7 +162,8 @@ records! {
         from_point_error: f32,
         /// Parities, 0 or 1.
         parity: [f32; 3],
-        pad: Pad<1>,
+        /// Nothing.
+        pad: Pad1,
         /// Factors of x and y, then what is subtracted from them.
         from_point: [f32; 4],
     }
@@ -186,7 +194,8 @@ records! {
         gain: f32,
         /// 1 / 2^scale.
         unit: f32,
-        pad: Pad<1>,
+        /// Nothing.
+        pad: Pad1,
     }
 
     /// The picture on a `texplane`: texel column and row are floor(row_i·P − origin_i).
@@ -256,7 +265,8 @@ records! {
         size: f32,
         /// A spotlight's axis.
         axis: [f32; 3],
-        pad: Pad<1>,
+        /// Nothing.
+        pad: Pad1,
     }
 
     /// A plane or rectangle for rays from anywhere; positions are from the viewpoint.
@@ -292,7 +302,8 @@ records! {
         highest: f32,
         /// Bound of the errors of the coordinates on the rectangle, but for what the position's error adds.
         sides_error: f32,
-        pad: Pad<2>,
+        /// Nothing.
+        pad: Pad2,
     }
 
     /// A sphere for rays from anywhere; its center is from the viewpoint.
@@ -311,7 +322,8 @@ records! {
         size: f32,
         /// 1 / radius.
         inverse_radius: f32,
-        pad: Pad<3>,
+        /// Nothing.
+        pad: Pad3,
     }
 }
 

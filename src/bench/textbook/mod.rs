@@ -14,11 +14,11 @@ use super::dispatch::Runner;
 use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
-use crate::shader::literal::{literal, vector};
-use crate::shader::preprocess::{Directives, preprocess};
 use crate::image::Picture;
 use crate::scene::{Scene, Shape};
 use crate::settings::Settings;
+use crate::shader::literal::{literal, vector};
+use crate::shader::preprocess::{Directives, preprocess};
 use records::Records;
 
 /// Spheres of a scene that these ways take on.

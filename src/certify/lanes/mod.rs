@@ -7,14 +7,14 @@
 
 mod shade;
 
-use crate::shader::bounds::{self, U};
-use crate::shader::kind::SurfaceKind;
-use crate::shader::pack::Packed;
-use crate::shader::records::{Plane, Rectangle, Sphere};
 use crate::prepare::Prepared;
 use crate::real::Bounded;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::shader::bounds::{self, U};
+use crate::shader::kind::SurfaceKind;
+use crate::shader::pack::Packed;
+use crate::shader::records::{Plane, Rectangle, Sphere};
 
 /// Pixels at once.
 pub const LANES: usize = 8;

@@ -11,11 +11,11 @@ use std::time::Instant;
 
 use super::GpuError;
 use super::canvas::Canvas;
-use crate::shader::compose::WORKGROUP;
 use super::device::Gpu;
 use super::pipeline::Pipeline;
 use crate::frame::Stop;
 use crate::jitter::Jitter;
+use crate::shader::compose::WORKGROUP;
 use assembly::Assembly;
 use plan::Plan;
 use slot::Slot;

@@ -5,8 +5,8 @@
 
 use super::plan::Rectangle;
 use crate::frame::Part;
-use crate::shader::feature_set::PARTIAL_HEAD;
 use crate::gpu::pipeline::Pipeline;
+use crate::shader::feature_set::PARTIAL_HEAD;
 
 /// Bytes of the counter of records, before the pixels.
 const COUNTER: u64 = 4;

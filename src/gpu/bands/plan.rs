@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::shader::compose::WORKGROUP;
 use crate::jitter::Jitter;
+use crate::shader::compose::WORKGROUP;
 
 /// Ray–object tests of the first dispatch, whose speed is not known yet, for each second that it may take: what two CPU cores
 /// do at least.

@@ -3,14 +3,14 @@
 use std::time::Instant;
 
 use super::super::GpuError;
-use crate::shader::compose::WORKGROUP;
 use super::super::device::Gpu;
-use crate::shader::records::{CameraNumbers, Job};
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::partial;
 use super::plan::Rectangle;
 use super::{BandTimes, Frame, OFFSET_BYTES};
+use crate::shader::compose::WORKGROUP;
+use crate::shader::records::{CameraNumbers, Job};
 
 /// Buffers for one dispatch under way.
 #[derive(Debug)]

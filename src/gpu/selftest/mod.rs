@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::GpuError;
 use super::device::Gpu;
-use super::literal::literal;
+use crate::shader::literal::literal;
 
 mod exact;
 mod operands;

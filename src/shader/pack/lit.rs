@@ -1,11 +1,10 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
 use super::{Packed, f32x3};
-use crate::shader::record::Pad;
-use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
-use crate::shader::bounds::{U, most, up};
 use crate::prepare::{self, Prepared, World, world};
 use crate::real::{Bounded, Real, V3};
+use crate::shader::bounds::{U, most, up};
+use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
 #[derive(Debug, Clone)]
@@ -120,7 +119,7 @@ fn light(light: &prepare::Light<Bounded>) -> Light {
         emissivity: f32x3(light.emissivity),
         size: size(light.location),
         axis: f32x3(axis),
-        pad: Pad::default(),
+        pad: Default::default(),
     }
 }
 
@@ -175,7 +174,7 @@ fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> Wo
         bounded: u32::from(plane.extent.is_some()),
         highest,
         sides_error: up(8.0 * U * (most_of(origin) + most_of(dimensions))),
-        pad: Pad::default(),
+        pad: Default::default(),
     }
 }
 
@@ -188,6 +187,6 @@ fn world_sphere(world: &World<Bounded>, sphere: &world::WorldSphere<Bounded>) ->
         level: bits(&sphere.level),
         size: size(sphere.center),
         inverse_radius: (Bounded::exact(1.0) / sphere.radius).value as f32,
-        pad: Pad::default(),
+        pad: Default::default(),
     }
 }

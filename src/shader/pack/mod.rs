@@ -16,10 +16,9 @@ use rayon::prelude::*;
 
 use super::bounds::{Screen, U, most, up};
 use super::kind::SurfaceKind;
-use super::record::Pad;
 use super::records::{
-    BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere, SphereAndHit, SphereHit,
-    Texplane, TiledPlane,
+    BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere,
+    SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
 use crate::prepare::tiles::Tiles;
 use crate::prepare::{self, Prepared, View};
@@ -201,7 +200,11 @@ impl Packed {
         let objects = self.objects.iter().map(|o| brightest(&o.ambient));
         let others = self.tiled_planes.iter().map(|t| brightest(&t.altmaterial));
         let ambient = objects.chain(others).fold(0.0, f64::max);
-        let most = self.kinds.iter().map(|kind| kind.brightest(ambient)).fold(1e-30, f64::max);
+        let most = self
+            .kinds
+            .iter()
+            .map(|kind| kind.brightest(ambient))
+            .fold(1e-30, f64::max);
         (0.9 / (most * 1.001 * f64::from(self.camera.numbers.gain))).min(f64::from(f32::MAX)) as f32
     }
 
@@ -221,7 +224,11 @@ impl Packed {
             }
             prepare::Surface::Pplane(pplane) => {
                 self.pplanes.push(procedural_plane(pplane));
-                self.set_kind(object, SurfaceKind::Pplane(pplane.shader), self.pplanes.len() - 1);
+                self.set_kind(
+                    object,
+                    SurfaceKind::Pplane(pplane.shader),
+                    self.pplanes.len() - 1,
+                );
             }
             prepare::Surface::Textured(textured) => {
                 let first = *textures[textured.texture].get_or_insert_with(|| {
@@ -323,7 +330,7 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
             distance: d as f32,
             gain: (255.0 * unit) as f32,
             unit: unit as f32,
-            pad: Pad::default(),
+            pad: Default::default(),
         },
         w_error: up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
         spread: up(1.0 + more[0] + more[1]),

@@ -1,11 +1,10 @@
 //! What primary rays can hit, as forms over the pixel with literal error bounds: planes, rectangles, spheres.
 
-use crate::shader::record::Pad;
-use crate::shader::records::{Plane, Rectangle, Sphere, SphereHit};
-use crate::shader::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
 use crate::prepare::camera::ANCHOR_LIMIT;
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
+use crate::shader::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
+use crate::shader::records::{Plane, Rectangle, Sphere, SphereHit};
 
 fn number(value: f64) -> Bounded {
     Bounded::exact(value)
@@ -54,7 +53,7 @@ pub(super) fn plane(
         group,
         inverse_error,
         front_error,
-        pad: Pad::default(),
+        pad: Default::default(),
     }
 }
 
@@ -95,9 +94,9 @@ pub(super) fn rectangle(
         side_1: b.0,
         front_error: base.front_error,
         side_2: c.0,
-        pad_0: Pad::default(),
+        pad_0: Default::default(),
         side_3: d.0,
-        pad_1: Pad::default(),
+        pad_1: Default::default(),
         side_errors: [a.1, b.1, c.1, d.1],
     }
 }
@@ -272,8 +271,8 @@ pub(super) fn sphere_hit(
         form_y: y.0,
         center_size: up(most(center.dot(center).sqrt())),
         form_z: z.0,
-        pad_0: Pad::default(),
+        pad_0: Default::default(),
         center: super::f32x3(center),
-        pad_1: Pad::default(),
+        pad_1: Default::default(),
     }
 }

@@ -23,7 +23,9 @@ impl Packed {
         }
         // Whatever may be uploaded or written as literals, whether this shader has it or not.
         let contents = BINDINGS.iter().filter_map(|binding| binding.contents);
-        let fit = contents.map(|contents| contents(self)).all(|elements| elements.fit());
+        let fit = contents
+            .map(|contents| contents(self))
+            .all(|elements| elements.fit());
         (!fit).then_some("an object's or light's numbers are too large")
     }
 }

@@ -1,12 +1,11 @@
 //! The records of what modulates an object's material: tiles, procedural planes, textures.
 
 use super::f32x3;
-use crate::shader::record::Pad;
-use crate::shader::records::{ProceduralPlane, Texplane, TiledPlane};
-use crate::shader::bounds::{U, most, up};
 use crate::prepare::Prepared;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::real::{Bounded, Real, V3};
+use crate::shader::bounds::{U, most, up};
+use crate::shader::records::{ProceduralPlane, Texplane, TiledPlane};
 
 /// The bound of an index's error that does not come from the position: of the fraction added to it.
 fn index_error(fraction: Bounded) -> f32 {
@@ -40,10 +39,10 @@ pub(super) fn tiled_plane(
         altmaterial: f32x3(scene.palette[other].ambient),
         altindex: other as u32,
         parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
-        pad_0: Pad::default(),
+        pad_0: Default::default(),
         spread: rows.map(length),
         errors: tiled.index.map(|i| index_error(i.fraction)),
-        pad_1: Pad::default(),
+        pad_1: Default::default(),
     }
 }
 
@@ -60,7 +59,7 @@ pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
         fraction: pplane.index.map(|i| i.fraction.value as f32),
         from_point_error: up(4.0 * U * offset + x.offset.error + y.offset.error),
         parity: pplane.index.map(|i| i.parity as f32),
-        pad: Pad::default(),
+        pad: Default::default(),
         from_point: [
             x.per_unit.value as f32,
             y.per_unit.value as f32,

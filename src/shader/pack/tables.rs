@@ -3,10 +3,10 @@
 
 use dashu_int::IBig;
 
-use crate::procedural::{self, Family};
 use crate::prepare::exact::parity;
 use crate::prepare::index::{Index, indices};
 use crate::prepare::{Prepared, Surface};
+use crate::procedural::{self, Family};
 use crate::real::Bounded;
 use crate::scene::Scene;
 use crate::settings::{Precision, Settings};
@@ -65,7 +65,9 @@ fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<V
     // (For an index: whether there is anything to decide about it, and the bits of its floor.)
     let bits: &dyn Fn(usize, &IBig) -> u32 = match surface {
         Surface::Tiled(tiled) => &|i, floor| parity_bits(i, parity(floor) ^ tiled.index[i].parity),
-        Surface::Pplane(pplane) if procedural::asks(Family::Pplane, pplane.shader, "pplane_odd(") => {
+        Surface::Pplane(pplane)
+            if procedural::asks(Family::Pplane, pplane.shader, "pplane_odd(") =>
+        {
             &|i, floor| parity_bits(i, parity(floor) ^ pplane.index[i].parity)
         }
         Surface::Textured(textured) if textured.size.iter().all(|s| *s <= MOST_TEXELS) => {
@@ -119,8 +121,8 @@ fn texel_bits(i: usize, floor: &IBig, size: u32, repeats: bool) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::pack::Packed;
     use crate::scene::load;
+    use crate::shader::pack::Packed;
 
     #[test]
     fn texels_are_repeated_or_clamped() {

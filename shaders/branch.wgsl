@@ -1,0 +1,205 @@
+// The tree of rays that grows behind a primary ray: mirror images, and what is seen through things. src/cpu/trace.rs decides
+// what is left in doubt here.
+
+// A ray of the tree.
+struct Branch {
+    beam: Beam,
+    // Length of the path before it.
+    total: f32,
+    total_error: f32, //~
+    // The group of surfaces that it left from.
+    last: u32,
+    // What its colour counts for; certified, by a factor within 1 ± this.
+    weight: vec3f,
+    weight_error: f32, //~
+}
+
+// Where a ray of the tree hit, and how far that is along it.
+struct PathPoint {
+    point: Point,
+    t: f32,
+    t_error: f32, //~
+}
+//#if stack
+
+// The mirror rays that wait while another ray is followed. (Not a variable of the function: that made one driver's code
+// twice as slow, and its compile time grows with the stack's size.)
+var<private> stack: array<Branch, STACK>;
+var<private> waiting: u32;
+//#end
+
+// Adds what a point brings that a branch ends at; `ended` is the branch with the length of its path up to there.
+fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade) {
+    let share = ended.weight * (kept / ended.total * CAMERA_GAIN);
+    (*traced).color += share * lit.color;
+//#if certified
+    (*traced).error += share * (lit.error * (1.0 + ended.weight_error) + lit.color * (ended.weight_error + 1.01 * ended.total_error / ended.total + 12.0 * U))
+        + 2.0 * U * (*traced).color;
+//#end
+}
+//#if mirror
+
+// The mirror image of the ray that ended at a point.
+fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
+    let along = -dot(point.normal, ended.beam.dir);
+    var mirror: Branch;
+    mirror.beam.base = point.position;
+    mirror.total = ended.total;
+    mirror.last = point.group;
+    mirror.weight = ended.weight * specular;
+//#if certified
+    mirror.beam.dir = barrier(2.0 * along * point.normal + ended.beam.dir);
+    mirror.beam.dir_error = 1.01 * ended.beam.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
+    mirror.beam.base_error = point.error;
+    mirror.beam.size = point.size;
+    mirror.total_error = ended.total_error;
+    mirror.weight_error = ended.weight_error + 2.0 * U;
+//#else
+    mirror.beam.dir = 2.0 * along * point.normal + ended.beam.dir;
+//#end
+    return mirror;
+}
+//#end
+//#if clear
+
+// The ray that goes on behind the point at which a ray ended.
+fn through_branch(ended: Branch, point: Point, transparency: f32) -> Branch {
+    var through = ended;
+    through.beam.base = point.position;
+    through.last = point.group;
+//#if certified
+    through.beam.base_error = point.error;
+    through.beam.size = point.size;
+    through.weight_error = ended.weight_error + 5.0 * U;
+//#end
+    if transparency > 0.0 {
+        through.weight *= materials[tile_material(point)].tint * transparency;
+    } else {
+        through.weight = vec3f(0.0);
+    }
+    return through;
+}
+//#end
+
+// Follows the tree from where the primary ray hit.
+fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
+    var at = first;
+    var branch: Branch;
+    branch.beam = primary;
+    branch.last = NOTHING;
+    branch.weight = vec3f(1.0);
+//#if stack
+    waiting = 0u;
+//#end
+    var rays = 1u;
+    loop {
+        if steps > STEPS_LIMIT {
+            (*traced).verdict = UNDECIDED;
+            break;
+        }
+        steps += 2u;
+        let material = materials[objects[at.point.object].material];
+        let lit = shade(at.point, branch.beam);
+        branch.total += at.t;
+        branch.total_error += at.t_error + U * branch.total; //~
+        add_shade(traced, branch, material.kept, lit);
+//#if certified
+        if doubt | (branch.total_error > 0.01 * branch.total) {
+            (*traced).verdict = UNDECIDED;
+            break;
+        }
+        let short = MAX_PATH - branch.total;
+        let goes_on = any(branch.weight * material.specular > vec3f(0.0)) | (material.transparency > 0.0);
+        if goes_on & !(abs(short) > branch.total_error + 2.0 * U * MAX_PATH) {
+            // Whether the path ends here is not certain.
+            (*traced).verdict = UNDECIDED;
+            break;
+        }
+//#end
+        // The rays that go on from here.
+        let within = branch.total <= MAX_PATH;
+//#if stack
+        // What goes through is followed at once; the mirror image waits if both go on.
+        let mirror = mirror_branch(branch, at.point, material.specular);
+        let through = through_branch(branch, at.point, material.transparency);
+        let mirrors = any(mirror.weight > vec3f(0.0)) & within;
+        let passes = any(through.weight > vec3f(0.0)) & within;
+        if mirrors & passes {
+            if waiting == STACK {
+                (*traced).verdict = UNDECIDED;
+                break;
+            }
+            stack[waiting] = mirror;
+            waiting += 1u;
+        }
+        branch = mirror;
+        if passes {
+            branch = through;
+        }
+        var met: Met;
+        met.object = NOTHING;
+        var follows = mirrors | passes;
+        loop {
+            if !follows {
+                if waiting == 0u {
+                    break;
+                }
+                waiting -= 1u;
+                branch = stack[waiting];
+            }
+            if rays == MAX_RAYS {
+                // More rays than allowed: the CPU says which pixel it is.
+                (*traced).verdict = UNDECIDED;
+                break;
+            }
+            rays += 1u;
+            steps += 2u * LANES;
+//#if certified
+            met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), LANES);
+            doubt |= !met_sure(met) | (branch.beam.dir_error > DIR_LIMIT);
+            if (met.object != NOTHING) | doubt {
+                break;
+            }
+//#else
+            met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), LANES);
+            if met.object != NOTHING {
+                break;
+            }
+//#end
+            follows = false;
+        }
+//#else
+//#if mirror
+        branch = mirror_branch(branch, at.point, material.specular);
+//#else
+        branch = through_branch(branch, at.point, material.transparency);
+//#end
+        if !within | !any(branch.weight > vec3f(0.0)) {
+            break;
+        }
+        if rays == MAX_RAYS {
+            (*traced).verdict = UNDECIDED;
+            break;
+        }
+        rays += 1u;
+//#if certified
+        let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
+        doubt |= !met_sure(met) | (branch.beam.dir_error > DIR_LIMIT);
+//#else
+        let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), 1u);
+//#end
+//#end
+//#if certified
+        if doubt {
+            (*traced).verdict = UNDECIDED;
+            break;
+        }
+//#end
+        if met.object == NOTHING {
+            break;
+        }
+        at.point = locate_met(branch.beam, met);
+        at.t = met.t;
+        at.t_error = met.error; //~
+    }
+}
