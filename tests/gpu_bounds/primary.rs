@@ -214,6 +214,7 @@ impl Picture {
         ];
         let calls = [("plane_hits", "planes"), ("rectangle_hits", "rectangles")];
         let spheres = packed.sphere_records();
+        let spheres: &[u8] = bytemuck::cast_slice(&spheres);
         for kind in 0..2 {
             let objects = &both[kind];
             let n = objects.len();
@@ -260,7 +261,7 @@ impl Picture {
     {CANDIDATE}",
                 self.begin()
             );
-            let mut inputs = self.point_inputs(&spheres);
+            let mut inputs = self.point_inputs(spheres);
             inputs.push(records[kind]);
             let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
             for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
@@ -339,7 +340,8 @@ impl Picture {
             CANDIDATE
         );
         let spheres = packed.sphere_records();
-        let inputs = [(5, spheres.as_slice())];
+        let spheres: &[u8] = bytemuck::cast_slice(&spheres);
+        let inputs = [(5, spheres)];
         let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
         for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
             let (center, radius) = truth[i % n];
