@@ -10,7 +10,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::features::FeatureSet;
 use crate::gpu::pack::Packed;
 use crate::gpu::pipeline::Pipeline;
-use crate::prepare::exact::two_to;
+use crate::real::rational::two_to;
 use crate::settings::Settings;
 
 const FIRST_HIT: &str = include_str!("first_hit.wgsl");

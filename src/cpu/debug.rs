@@ -21,8 +21,8 @@ use super::trace::{Fault, Hit, Limits, Unwatched, ray_trace};
 use crate::frame::PixelFault;
 use crate::jitter::Sampling;
 use crate::prepare::Prepared;
-use crate::prepare::exact::two_to;
 use crate::real::Real;
+use crate::real::rational::two_to;
 use crate::scene::{Scene, Shape};
 
 /// Which parts are listed.

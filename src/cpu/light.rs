@@ -5,8 +5,8 @@ use std::cmp::Ordering;
 use super::bvh::at_most;
 use super::surface::{Point, getdiff, tile_material};
 use super::world::{Met, Range, Toward, hits_from};
-use crate::prepare::exact::two_to;
 use crate::prepare::{Light, Prepared, World};
+use crate::real::rational::two_to;
 use crate::real::{Real, Undecided, V3};
 
 /// What a light does at a hit point.

@@ -6,8 +6,8 @@ use super::plane::{on_plane, plane_hits};
 use super::sphere::{sphere_from_center, sphere_hits};
 use super::surface::{Point, getamb};
 use super::world::{Range, closest_from};
-use crate::prepare::exact::two_to;
 use crate::prepare::{Prepared, Surface, World};
+use crate::real::rational::two_to;
 use crate::real::{Bounded, Real, Undecided, V3};
 
 pub use super::watch::{Branch, RayKind, Unmet, Unwatched, Watch};

@@ -1,9 +1,9 @@
 //! Error bounds for f32 on the GPU: the model of its arithmetic, the constants named in `shaders/`, and the literal bounds
 //! that the host derives for forms over the pixel. Each constant is derived in docs/NUMERICS.md under its name.
 
-use crate::prepare::exact::ratio;
 use crate::prepare::plane::Step;
 use crate::real::Bounded;
+use crate::real::rational::ratio;
 
 /// What + − × may be off by, relatively: the results are faithfully rounded.
 pub const U: f64 = 1.0 / 8_388_608.0;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::pack::{Kind, Packed};
-use crate::prepare::exact::two_to;
+use crate::real::rational::two_to;
 use crate::settings::{Precision, Settings, Spread};
 
 /// Which parts of the shader a scene needs.

@@ -8,9 +8,9 @@ use dashu_int::IBig;
 use glam::DVec3;
 
 use super::camera::over_pixels;
-use super::exact::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
 use super::plane::along_sides;
 use super::surface::{PPLANE_SHIFT, PPLANE_TILE, TILE_SHIFT};
+use crate::real::rational::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
 use crate::real::{Bounded, Real};
 use crate::scene::{self, Object, Scene, Shape, TextureMode};
 
@@ -205,7 +205,6 @@ const WHOLE: f64 = (1_u64 << 52) as f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepare::exact::is_zero;
     use crate::scene::load;
 
     /// What SEMANTICS says an index is, at the hit of the ray through a pixel; None where that misses.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Prepared, Sphere, World, world::WorldSphere};
-use crate::prepare::exact::two_to;
+use crate::real::rational::two_to;
 use crate::real::{Real, V3};
 use crate::scene::{Scene, Shape};
 

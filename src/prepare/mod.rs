@@ -10,7 +10,6 @@
 
 pub mod bvh;
 pub mod camera;
-pub mod exact;
 pub mod hidden;
 pub mod index;
 pub mod later;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::View;
 use super::camera::{origin, over_pixels, step};
-use super::exact::{
+use crate::real::rational::{
     Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub, two_to,
 };
 use crate::real::{Real, V3};

@@ -1,11 +1,10 @@
 //! What an object's surface needs to know about a hit point, made ready: tile indices and vectors from a point.
 
-use dashu_ratio::Relaxed as Ratio;
 use glam::DVec3;
 
 use super::camera;
-use super::exact::{abs, is_zero, parity, power_of_two, ratio, ratio3};
 use super::plane::{Extent, rows};
+use crate::real::rational::{Ratio, abs, is_zero, parity, power_of_two, ratio, ratio3, two_to};
 use crate::real::{Real, V3};
 use crate::scene::{self, Object, Shape, TextureMode};
 
@@ -222,7 +221,7 @@ impl<R: Real> TileIndex<R> {
         let whole = index.approx().floor();
         let whole = if whole.is_finite() { whole } else { 0.0 };
         Self {
-            per_unit: R::exact(super::exact::two_to(scale)) / d,
+            per_unit: R::exact(two_to(scale)) / d,
             fraction: index - R::exact(whole),
             parity: whole.rem_euclid(2.0) as u32,
         }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::{Camera, Sphere, View};
 use crate::real::Real;
+use crate::real::rational::two_to;
 use crate::scene::{Scene, Shape};
 
 /// From so many objects on a ray does not ask every sphere. (Fewer stand in the text of the GPU's shader.)
@@ -203,7 +204,7 @@ impl Outlines {
     fn new<R: Real>(scene: &Scene, camera: &Camera<R>, view: View) -> Self {
         Self {
             viewpoint: scene.camera.viewpoint,
-            unit: super::exact::two_to(-camera.scale),
+            unit: two_to(-camera.scale),
             distance: camera.distance.approx(),
             step: camera.step.map(R::approx),
             offset: camera.offset.map(R::approx),

@@ -10,9 +10,9 @@ use dashu_ratio::RBig;
 use glam::DVec3;
 
 use super::bvh::{self, Bvh};
-use super::exact::{dot, is_zero, power_of_two, ratio, ratio3, two_to};
 use super::later::Later;
 use super::{Light, plane::Extent};
+use crate::real::rational::{Ratio, dot, is_zero, power_of_two, ratio, ratio3, sub, two_to};
 use crate::real::{Real, V3};
 use crate::scene::{Scene, Shape};
 
@@ -191,7 +191,7 @@ fn plane<R: Real>(
     let v = ratio3(scene.camera.viewpoint);
     let q = ratio3(point);
     let unit = power_of_two(scale);
-    let from_viewpoint = super::exact::sub(&q, &v);
+    let from_viewpoint = sub(&q, &v);
     // The direction alone counts: by its largest component a normal of any length stays within range.
     let direction: V3<R> = shortened(normal);
     let length = direction.dot(direction).sqrt();
@@ -203,8 +203,7 @@ fn plane<R: Real>(
         // Most lights are far from most planes, and f64 is enough to say so.
         let rough = normal.dot(light - point).abs();
         let size = normal.abs().dot(light.abs() + point.abs());
-        (rough <= 1e-9 * size || !rough.is_normal())
-            && is_zero(&dot(&n, &super::exact::sub(&ratio3(light), &q)))
+        (rough <= 1e-9 * size || !rough.is_normal()) && is_zero(&dot(&n, &sub(&ratio3(light), &q)))
     });
     WorldPlane {
         object,
@@ -224,7 +223,7 @@ fn plane<R: Real>(
 }
 
 /// The rows of I − 2·N·Nᵀ/(N·N).
-fn mirror<R: Real>(n: &[super::exact::Ratio; 3]) -> [V3<R>; 3] {
+fn mirror<R: Real>(n: &[Ratio; 3]) -> [V3<R>; 3] {
     let nn = dot(n, n);
     [0, 1, 2].map(|i| {
         let [x, y, z] = [0, 1, 2].map(|j| {
@@ -246,7 +245,7 @@ fn lights_on_sphere(scene: &Scene, center: DVec3, radius: f64) -> Vec<usize> {
     let on = |light: &crate::scene::Light| {
         let rough = (light.location - center).length();
         (rough - radius).abs() <= 1e-9 * (radius + light.location.length() + center.length()) && {
-            let d = super::exact::sub(&ratio3(light.location), &ratio3(center));
+            let d = sub(&ratio3(light.location), &ratio3(center));
             let r = ratio(radius);
             dot(&d, &d) == &r * &r
         }
@@ -286,7 +285,7 @@ impl Groups {
                     .iter()
                     .find(|c| !is_zero(c))
                     .cloned()
-                    .unwrap_or(super::exact::Ratio::ONE);
+                    .unwrap_or(Ratio::ONE);
                 let offset = dot(&n, &ratio3(point)) / &lead;
                 let [x, y, z] = n.map(|c| (c / &lead).canonicalize());
                 *self

@@ -7,9 +7,9 @@ use std::io::{self, Write};
 use crate::cpu::light::Lit;
 use crate::cpu::surface::{Point, texel_place, tile_material};
 use crate::cpu::trace::{Branch, RayKind, Unmet, Watch};
-use crate::prepare::exact::two_to;
 use crate::prepare::{Prepared, Surface};
 use crate::real::V3;
+use crate::real::rational::two_to;
 use crate::scene::Scene;
 
 use super::digits::{components, count, short, short_triple};

@@ -7,7 +7,7 @@
 use std::fmt;
 
 use crate::prepare::camera::{origin, step};
-use crate::prepare::exact::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
+use crate::real::rational::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
 use crate::scene::{Camera, Extent, Scene, Shape};
 
 use super::digits;

@@ -2,8 +2,7 @@
 
 use std::cmp::Ordering;
 
-use dashu_ratio::Relaxed as Ratio;
-
+use super::rational::Ratio;
 use super::{Real, Undecided};
 
 impl Real for f64 {

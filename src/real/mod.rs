@@ -8,6 +8,7 @@
 mod bounded;
 mod float;
 mod lazy;
+pub mod rational;
 mod vec3;
 
 pub use bounded::Bounded;
@@ -18,7 +19,7 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use dashu_ratio::Relaxed as Ratio;
+use rational::Ratio;
 
 /// What a comparison answers that the number type is too coarse for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -349,7 +349,7 @@ pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
 }
 
 fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
-    let unit = prepare::exact::two_to(-camera.scale);
+    let unit = crate::real::rational::two_to(-camera.scale);
     let reach = screen.reach(camera.anchor);
     let d = camera.distance.value;
     let offset = camera.offset.map(most);

@@ -4,10 +4,10 @@
 use dashu_int::IBig;
 
 use crate::gpu::compose::pplane_asks;
-use crate::prepare::exact::parity;
 use crate::prepare::index::{Index, indices};
 use crate::prepare::{Prepared, Surface};
 use crate::real::Bounded;
+use crate::real::rational::parity;
 use crate::scene::Scene;
 use crate::settings::{Precision, Settings};
 

@@ -7,10 +7,10 @@ use std::cell::Cell;
 use std::cmp::Ordering;
 use std::rc::Rc;
 
-use dashu_base::{BitTest, SquareRootRem};
+use dashu_base::BitTest;
 use dashu_int::UBig;
 
-use crate::prepare::exact::Ratio;
+use crate::real::rational::{self, Ratio};
 
 /// A number of the tower.
 #[derive(Debug, Clone)]
@@ -274,7 +274,7 @@ impl Tower {
     /// a² − b²c = (m² − l²c)² is a square n², and m² = (a ± n)/2.
     fn root_in(&self, x: &Element, level: usize) -> Result<Option<Element>, TooHard> {
         if let (Element::Rational(value), 0) = (x, level) {
-            return Ok(rational_root(value).map(Element::Rational));
+            return Ok(rational::root(value).map(Element::Rational));
         }
         let (a, b) = x.split(level);
         let below = level - 1;
@@ -301,23 +301,6 @@ impl Tower {
         }
         Ok(None)
     }
-}
-
-/// The root of a rational number, if it is rational.
-fn rational_root(value: &Ratio) -> Option<Ratio> {
-    if *value < Ratio::ZERO {
-        return None;
-    }
-    let (numerator, denominator) = value.clone().canonicalize().into_parts();
-    let (_, numerator) = numerator.into_parts();
-    let root = |n: &UBig| {
-        let (root, rest) = n.sqrt_rem();
-        rest.is_zero().then_some(root)
-    };
-    Some(Ratio::from_parts(
-        root(&numerator)?.into(),
-        root(&denominator)?,
-    ))
 }
 
 #[cfg(test)]
