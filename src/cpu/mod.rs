@@ -5,6 +5,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod debug;
+pub mod hit_point;
 pub mod light;
 pub mod pixel;
 pub mod plane;

@@ -3,8 +3,7 @@
 use std::cmp::Ordering;
 
 use super::camera::Ray;
-use crate::prepare::Plane;
-use crate::prepare::world::WorldPlane;
+use crate::prepare::{Plane, WorldPlane};
 use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the hit on the plane, or None for a miss.

@@ -8,7 +8,7 @@ use dashu_int::IBig;
 use glam::DVec3;
 
 use super::camera::over_pixels;
-use super::plane::along_sides;
+use super::extent::along_sides;
 use super::surface::{PPLANE_SHIFT, PPLANE_TILE, TILE_SHIFT};
 use crate::real::rational::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
 use crate::real::{Bounded, Real};

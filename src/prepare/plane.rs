@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::View;
-use super::camera::{origin, over_pixels, step};
+use super::camera::{self, origin, over_pixels, step};
+use super::extent::{Extent, along_sides};
+use super::view::View;
 use crate::real::rational::{
     Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub, two_to,
 };
@@ -58,17 +59,6 @@ impl Step {
     }
 }
 
-/// The rectangle of a finite plane: p_i = rows\[i\]·P − origin\[i\] lies in [0, dimensions\[i\]] for i = 0 and 1.
-#[derive(Debug, Clone)]
-pub struct Extent<R> {
-    /// Unit vectors along the sides: xdir projected onto the plane, and normal × that.
-    pub rows: [V3<R>; 2],
-    /// rows\[i\]·(Q − V).
-    pub origin: [R; 2],
-    /// Lengths of the sides, in units of 2^scale.
-    pub dimensions: [R; 2],
-}
-
 /// The same as primary rays see it: on the ray s·W, p_i/s = forms\[i\]·(W.x, W.y, 1), linear in the ray.
 #[derive(Debug, Clone)]
 pub struct Sides<R> {
@@ -78,65 +68,6 @@ pub struct Sides<R> {
     pub dimensions: [R; 2],
     /// The borders p_0 ≥ 0, p_1 ≥ 0, p_0 ≤ d_0, p_1 ≤ d_1 that run along columns or rows.
     pub steps: [Option<Step>; 4],
-}
-
-impl<R: Real> Extent<R> {
-    /// Prepares a rectangle, positions from the viewpoint.
-    pub fn new(
-        camera: &scene::Camera,
-        scale: i32,
-        normal: DVec3,
-        point: DVec3,
-        extent: &scene::Extent,
-    ) -> Self {
-        let rows = rows(normal, extent.xdir);
-        let unit = R::exact(two_to(-scale));
-        let corner = (V3::exact(point) - V3::exact(camera.viewpoint)) * unit;
-        Self {
-            rows,
-            origin: rows.map(|row| row.dot(corner)),
-            dimensions: [
-                R::exact(extent.dimensions.x) * unit,
-                R::exact(extent.dimensions.y) * unit,
-            ],
-        }
-    }
-
-    /// The coordinates of a point of the plane along the sides.
-    pub fn coordinates(&self, position: V3<R>) -> [R; 2] {
-        [
-            self.rows[0].dot(position) - self.origin[0],
-            self.rows[1].dot(position) - self.origin[1],
-        ]
-    }
-}
-
-/// A vector along the first side of a rectangle: (N·N)·xdir − (N·xdir)·N, which is rational.
-fn across(n: &[Ratio; 3], x: &[Ratio; 3]) -> [Ratio; 3] {
-    let (nn, nx) = (dot(n, n), dot(n, x));
-    [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx)
-}
-
-/// Vectors along both sides of a rectangle, rational and of any length: the second is N × the first.
-pub(super) fn along_sides(n: &[Ratio; 3], x: &[Ratio; 3]) -> [[Ratio; 3]; 2] {
-    let first = across(n, x);
-    let cross = |i: usize, j: usize| &n[i] * &first[j] - &n[j] * &first[i];
-    let second = [cross(1, 2), cross(2, 0), cross(0, 1)];
-    [first, second]
-}
-
-/// Unit vectors along the sides of a rectangle: R0 = unit(xdir − (N·xdir)N), R1 = N × R0, N of unit length.
-pub fn rows<R: Real>(normal: DVec3, xdir: DVec3) -> [V3<R>; 2] {
-    let across = across(&ratio3(normal), &ratio3(xdir));
-    let largest = across
-        .iter()
-        .cloned()
-        .map(abs)
-        .fold(Ratio::ZERO, |a, b| if b > a { b } else { a });
-    let [a, b, c] = across.map(|c| R::ratio(&(c / &largest)));
-    let r0 = V3::new(a, b, c).unit();
-    let unit_normal = super::world::shortened::<R>(normal).unit();
-    [r0, unit_normal.cross(r0)]
 }
 
 impl<R: Real> Plane<R> {
@@ -164,7 +95,7 @@ impl<R: Real> Plane<R> {
         if front.never {
             return None;
         }
-        let scale = super::camera::exponent(camera.viewpoint.z);
+        let scale = camera::exponent(camera.viewpoint.z);
         let unit = power_of_two(scale);
         let inverse = [
             R::ratio(&(&a * &unit)),

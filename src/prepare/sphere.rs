@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::Camera;
-use super::camera::ANCHOR_LIMIT;
+use super::camera::{ANCHOR_LIMIT, Camera};
 use crate::real::rational::{Ratio, dot, power_of_two, ratio, ratio3, sub, two_to};
 use crate::real::{Real, V3};
 

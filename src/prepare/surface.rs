@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::camera;
-use super::plane::{Extent, rows};
+use super::extent::{Extent, rows};
 use crate::real::rational::{Ratio, abs, is_zero, parity, power_of_two, ratio, ratio3, two_to};
 use crate::real::{Real, V3};
 use crate::scene::{self, Object, Shape, TextureMode};

@@ -9,7 +9,9 @@ use std::collections::HashSet;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Camera, Sphere, View};
+use super::camera::Camera;
+use super::sphere::Sphere;
+use super::view::View;
 use crate::real::Real;
 use crate::real::rational::two_to;
 use crate::scene::{Scene, Shape};

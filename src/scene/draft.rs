@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::kind::{Class, Kind};
 use super::model::{
     Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
     TextureMode,
 };
-use super::table::{Class, Kind};
 
 /// The fields of all entities; an entity uses those that its rows name.
 #[derive(Debug, Clone, Default)]

@@ -8,10 +8,12 @@
 //! Beside it, `places` tells where in the text what is in the scene stands.
 
 mod build;
+mod bytes;
 mod check;
 mod draft;
 mod encoding;
 mod errors;
+mod kind;
 mod lex;
 mod limit;
 mod listing;

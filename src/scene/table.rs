@@ -4,6 +4,7 @@
 //! nowhere else. In the flow text → lex → parse → [`Scene`](super::Scene) this is what `parse` looks words up in.
 
 use super::draft::Draft;
+use super::kind::{Class, Kind};
 use super::limit::Limit;
 use super::number;
 
@@ -11,42 +12,6 @@ pub use super::limit::MAX_PIXELDIM;
 
 // The tables of shaders are made from the folder of shaders, in one place.
 pub use crate::cpu::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
-/// The entity types.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// The viewpoint and the screen.
-    Camera,
-    /// How a surface answers light.
-    Material,
-    /// A picture to lay on a `texplane`.
-    Texture,
-    /// A visible object.
-    Object(Class),
-    /// A light, with or without a cone.
-    Light {
-        /// Is it a spotlight?
-        spot: bool,
-    },
-}
-
-/// The classes of visible objects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Class {
-    /// `plane`
-    Plane,
-    /// `tiled_plane`
-    Tiled,
-    /// `pplane`
-    ProceduralPlane,
-    /// `fplane`
-    Finite,
-    /// `texplane`
-    Textured,
-    /// `sphere`
-    Sphere,
-    /// `psphere`
-    ProceduralSphere,
-}
 
 /// One row: an attribute of an entity.
 pub(super) struct Attribute {

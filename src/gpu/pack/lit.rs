@@ -2,7 +2,7 @@
 
 use super::{Light, LitObject, Material, Packed, WorldPlane, WorldSphere, f32x3};
 use crate::gpu::bounds::{U, most, up};
-use crate::prepare::{self, Prepared, World, world};
+use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
 
 /// The records of a lit scene, and what its materials can do.
@@ -136,7 +136,7 @@ fn bits(level: &[usize]) -> u32 {
         .sum()
 }
 
-fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> WorldPlane {
+fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> WorldPlane {
     let mut keep = [1.0; 3];
     let mut own = [0.0; 3];
     let mut highest = world.highest.value as f32;
@@ -177,7 +177,7 @@ fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> Wo
     }
 }
 
-fn world_sphere(world: &World<Bounded>, sphere: &world::WorldSphere<Bounded>) -> WorldSphere {
+fn world_sphere(world: &World<Bounded>, sphere: &prepare::WorldSphere<Bounded>) -> WorldSphere {
     WorldSphere {
         center: f32x3(sphere.center),
         radius: sphere.radius.value as f32,

@@ -1,0 +1,38 @@
+//! The kinds of entities: what `table` has a row list for, and `draft` makes a part of the model of.
+
+/// The entity types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The viewpoint and the screen.
+    Camera,
+    /// How a surface answers light.
+    Material,
+    /// A picture to lay on a `texplane`.
+    Texture,
+    /// A visible object.
+    Object(Class),
+    /// A light, with or without a cone.
+    Light {
+        /// Is it a spotlight?
+        spot: bool,
+    },
+}
+
+/// The classes of visible objects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    /// `plane`
+    Plane,
+    /// `tiled_plane`
+    Tiled,
+    /// `pplane`
+    ProceduralPlane,
+    /// `fplane`
+    Finite,
+    /// `texplane`
+    Textured,
+    /// `sphere`
+    Sphere,
+    /// `psphere`
+    ProceduralSphere,
+}
