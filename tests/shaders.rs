@@ -14,8 +14,8 @@ use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
 use plumb::render::{Precision, Settings, Spread};
 use plumb::scene::{
-    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
-    TextureMode,
+    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Texture, TextureMode,
 };
 
 /// Something that a scene may have and a shader then needs.
@@ -83,7 +83,7 @@ fn plane(normal: DVec3, point: DVec3, surface: Surface) -> Object {
     let shape = Shape::Plane {
         normal,
         point,
-        extent: None,
+        extent: Extent::Unbounded,
     };
     Object {
         name: "p".into(),
@@ -176,7 +176,7 @@ fn of_material(material: usize, object: Object) -> Object {
 }
 
 fn rectangle(surface: Surface) -> Object {
-    let extent = Some(Extent {
+    let extent = Extent::Rectangle(Rectangle {
         xdir: DVec3::X,
         dimensions: DVec2::new(2.0, 3.0),
     });

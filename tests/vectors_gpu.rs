@@ -9,7 +9,7 @@ use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
 use plumb::prepare;
 use plumb::render::Settings;
-use plumb::scene::{Camera, Material, Object, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Material, Object, Scene, Shape, Surface};
 use wgpu::util::DeviceExt as _;
 
 /// The notes' operations in WGSL. What WGSL has itself (dot, cross, length, +, −, scalar ·, matrix ·) is used as it is.
@@ -353,7 +353,7 @@ mod pixel_to_ray {
         let shape = Shape::Plane {
             normal: DVec3::Z,
             point: DVec3::new(0.0, 0.0, -5.0),
-            extent: None,
+            extent: Extent::Unbounded,
         };
         Scene {
             camera: Camera {

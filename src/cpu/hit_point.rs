@@ -1,4 +1,5 @@
-//! Where a primary ray hits, in world coordinates: what `--debug`, `probe` and `bench` tell of a hit that `trace` found.
+//! Where a primary ray hits, in world coordinates: what `--debug`, `probe` and `bench` tell of a hit that `trace`
+//! found.
 
 use glam::DVec3;
 

@@ -6,9 +6,18 @@ use crate::real::rational::{Ratio, abs, dot, ratio, ratio3, two_to};
 use crate::real::{Real, V3};
 use crate::scene;
 
+/// Where a plane ends: straight sides all around, or nowhere.
+#[derive(Debug, Clone)]
+pub enum Extent<R> {
+    /// It has no end.
+    Unbounded,
+    /// It is a rectangle.
+    Rectangle(Rectangle<R>),
+}
+
 /// The rectangle of a finite plane: p_i = rows\[i\]·P − origin\[i\] lies in [0, dimensions\[i\]] for i = 0 and 1.
 #[derive(Debug, Clone)]
-pub struct Extent<R> {
+pub struct Rectangle<R> {
     /// Unit vectors along the sides: xdir projected onto the plane, and normal × that.
     pub rows: [V3<R>; 2],
     /// rows\[i\]·(Q − V).
@@ -18,7 +27,7 @@ pub struct Extent<R> {
 }
 
 impl<R: Real> Extent<R> {
-    /// Prepares a rectangle, positions from the viewpoint.
+    /// Prepares the end of a plane, positions from the viewpoint.
     pub fn new(
         camera: &scene::Camera,
         scale: i32,
@@ -26,15 +35,33 @@ impl<R: Real> Extent<R> {
         point: DVec3,
         extent: &scene::Extent,
     ) -> Self {
-        let rows = rows(normal, extent.xdir);
+        match extent {
+            scene::Extent::Unbounded => Self::Unbounded,
+            scene::Extent::Rectangle(rectangle) => {
+                Self::Rectangle(Rectangle::new(camera, scale, normal, point, rectangle))
+            }
+        }
+    }
+}
+
+impl<R: Real> Rectangle<R> {
+    /// Prepares a rectangle, positions from the viewpoint.
+    pub fn new(
+        camera: &scene::Camera,
+        scale: i32,
+        normal: DVec3,
+        point: DVec3,
+        rectangle: &scene::Rectangle,
+    ) -> Self {
+        let rows = rows(normal, rectangle.xdir);
         let unit = R::exact(two_to(-scale));
         let corner = (V3::exact(point) - V3::exact(camera.viewpoint)) * unit;
         Self {
             rows,
             origin: rows.map(|row| row.dot(corner)),
             dimensions: [
-                R::exact(extent.dimensions.x) * unit,
-                R::exact(extent.dimensions.y) * unit,
+                R::exact(rectangle.dimensions.x) * unit,
+                R::exact(rectangle.dimensions.y) * unit,
             ],
         }
     }

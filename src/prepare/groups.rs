@@ -13,7 +13,7 @@ pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
     let mut groups = Groups::default();
     let of = |object: &Object| match object.shape {
         Shape::Sphere { .. } if !equal_spheres => groups.one_more(),
-        _ => groups.of(&object.shape),
+        Shape::Sphere { .. } | Shape::Plane { .. } => groups.of(&object.shape),
     };
     scene.objects.iter().map(of).collect()
 }
@@ -75,7 +75,7 @@ mod tests {
         Shape::Plane {
             normal: normal.into(),
             point: point.into(),
-            extent: None,
+            extent: crate::scene::Extent::Unbounded,
         }
     }
 

@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 use super::camera::{self, origin, over_pixels, step};
-use super::extent::{Extent, along_sides};
+use super::extent::{Rectangle, along_sides};
 use super::view::View;
+use crate::real::Real;
 use crate::real::rational::{
-    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub, two_to,
+    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub,
 };
-use crate::real::{Real, V3};
 use crate::scene;
 
 /// A plane that some pixel's ray can hit.
@@ -28,8 +28,8 @@ pub struct Plane<R> {
     pub front: Option<[R; 3]>,
     /// The same where it depends on x or on y alone.
     pub front_step: Option<Step>,
-    /// The sides of a rectangle.
-    pub sides: Option<Sides<R>>,
+    /// Where it ends.
+    pub sides: Sides<R>,
 }
 
 /// A border that runs along a column or a row of pixels, as an exact fact: inside is `pixel[axis] ≥ at`, or `≤ at`.
@@ -59,15 +59,32 @@ impl Step {
     }
 }
 
-/// The same as primary rays see it: on the ray s·W, p_i/s = forms\[i\]·(W.x, W.y, 1), linear in the ray.
+/// A side as primary rays see it: inside is where form·(W.x, W.y, 1) ≥ 0.
 #[derive(Debug, Clone)]
-pub struct Sides<R> {
-    /// Coefficients of p_i/s over (W.x, W.y, 1).
-    pub forms: [[R; 3]; 2],
-    /// Lengths of the sides, in units of 2^scale.
-    pub dimensions: [R; 2],
-    /// The borders p_0 ≥ 0, p_1 ≥ 0, p_0 ≤ d_0, p_1 ≤ d_1 that run along columns or rows.
-    pub steps: [Option<Step>; 4],
+pub struct Side<R> {
+    /// Coefficients over (W.x, W.y, 1): a form over positions, times 1/s, is linear in the ray.
+    pub form: [R; 3],
+    /// The same border where it runs along a column or row.
+    pub step: Option<Step>,
+}
+
+/// The sides of a plane as primary rays see them: a hit is inside all of them.
+#[derive(Debug, Clone)]
+pub enum Sides<R> {
+    /// There are none: the plane has no end.
+    Unbounded,
+    /// Those of a rectangle, with p and d as in [`Rectangle`]: p₀ ≥ 0, p₁ ≥ 0, p₀ ≤ d₀, p₁ ≤ d₁.
+    Rectangle(Box<[Side<R>; 4]>),
+}
+
+impl<R> Sides<R> {
+    /// All of them.
+    pub fn all(&self) -> &[Side<R>] {
+        match self {
+            Self::Unbounded => &[],
+            Self::Rectangle(sides) => sides.as_slice(),
+        }
+    }
 }
 
 impl<R: Real> Plane<R> {
@@ -78,7 +95,7 @@ impl<R: Real> Plane<R> {
         object: usize,
         normal: DVec3,
         point: DVec3,
-        extent: Option<&scene::Extent>,
+        extent: &scene::Extent,
     ) -> Option<Self> {
         let n = ratio3(normal);
         let v = ratio3(camera.viewpoint);
@@ -102,24 +119,21 @@ impl<R: Real> Plane<R> {
             R::ratio(&(&b * &unit)),
             R::ratio(&c),
         ];
-        let sides = extent.map(|extent| {
-            let steps = side_steps(camera, normal, point, extent, &[&a, &b, &c]);
-            let extent = Extent::<R>::new(camera, scale, normal, point, extent);
-            let distance = R::ratio(&(&v[2] / &unit));
-            let form = |i: usize| {
-                let (row, origin) = (extent.rows[i], extent.origin[i]);
-                [
-                    row.x - origin * inverse[0],
-                    row.y - origin * inverse[1],
-                    -(row.z * distance) - origin * inverse[2],
-                ]
-            };
-            Sides {
-                forms: [form(0), form(1)],
-                dimensions: extent.dimensions,
-                steps,
+        let sides = match extent {
+            scene::Extent::Unbounded => Sides::Unbounded,
+            scene::Extent::Rectangle(rectangle) => {
+                let steps = side_steps(camera, normal, point, rectangle, &[&a, &b, &c]);
+                let distance = R::ratio(&(&v[2] / &unit));
+                let rectangle = Rectangle::<R>::new(camera, scale, normal, point, rectangle);
+                let forms = side_forms(&rectangle, &inverse, distance);
+                let [p0, p1, q0, q1] = forms;
+                let [s0, s1, s2, s3] = steps;
+                Sides::Rectangle(Box::new(
+                    [(p0, s0), (p1, s1), (q0, s2), (q1, s3)]
+                        .map(|(form, step)| Side { form, step }),
+                ))
             }
-        });
+        };
         Some(Self {
             object,
             inverse,
@@ -134,23 +148,44 @@ impl<R: Real> Plane<R> {
     }
 }
 
+/// p₀, p₁, d₀ − p₀ and d₁ − p₁ of a rectangle, all times 1/s, which is `inverse`, over (W.x, W.y, 1); W.z is
+/// −`distance`.
+fn side_forms<R: Real>(rectangle: &Rectangle<R>, inverse: &[R; 3], distance: R) -> [[R; 3]; 4] {
+    let from_start = [0, 1].map(|i| {
+        let (row, origin) = (rectangle.rows[i], rectangle.origin[i]);
+        [
+            row.x - origin * inverse[0],
+            row.y - origin * inverse[1],
+            -(row.z * distance) - origin * inverse[2],
+        ]
+    });
+    let to_end = [0, 1].map(|i| {
+        let (p, length) = (from_start[i], rectangle.dimensions[i]);
+        [0, 1, 2].map(|k| length * inverse[k] - p[k])
+    });
+    [from_start[0], from_start[1], to_end[0], to_end[1]]
+}
+
 /// The sides that run along columns or rows; `inverse` is 1/s over (W.x, W.y, 1) in world units.
 fn side_steps(
     camera: &scene::Camera,
     normal: DVec3,
     point: DVec3,
-    extent: &scene::Extent,
+    rectangle: &scene::Rectangle,
     inverse: &[&Ratio; 3],
 ) -> [Option<Step>; 4] {
     let v = ratio3(camera.viewpoint);
     let n = ratio3(normal);
     let corner = sub(&ratio3(point), &v);
-    let [first, second] = along_sides(&n, &ratio3(extent.xdir));
+    let [first, second] = along_sides(&n, &ratio3(rectangle.xdir));
     let q = over_pixels(camera, &inverse.map(Clone::clone));
     let mut steps = [None, None, None, None];
-    for (i, (row, dimension)) in [(first, extent.dimensions.x), (second, extent.dimensions.y)]
-        .into_iter()
-        .enumerate()
+    for (i, (row, dimension)) in [
+        (first, rectangle.dimensions.x),
+        (second, rectangle.dimensions.y),
+    ]
+    .into_iter()
+    .enumerate()
     {
         // |row| times p/s, and the same for d − p where |row| is rational.
         let offset = dot(&row, &corner);

@@ -15,7 +15,7 @@ use super::tiles::{self, Tiles};
 use super::view::View;
 use super::world::World;
 use crate::real::Real;
-use crate::scene::{Object, Scene, Shape, Texels};
+use crate::scene::{Scene, Shape, Texels};
 
 /// A scene made ready for tracing rays from its viewpoint, in the number type `R`.
 #[derive(Debug, Clone)]
@@ -66,10 +66,10 @@ impl<R: Real> Prepared<R> {
             prepared.spheres = spheres;
         }
         let materials = scene.objects.iter().map(|object| object.material);
-        let is_plane = scene
-            .objects
-            .iter()
-            .map(|object| matches!(object.shape, Shape::Plane { .. }));
+        let is_plane = scene.objects.iter().map(|object| match object.shape {
+            Shape::Plane { .. } => true,
+            Shape::Sphere { .. } => false,
+        });
         prepared.materials = Arc::new(materials.collect());
         prepared.is_plane = Arc::new(is_plane.collect());
         let scale = prepared.camera.scale;
@@ -119,43 +119,35 @@ impl<R: Real> Prepared<R> {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
         let mut surfaces = Vec::with_capacity(scene.objects.len());
+        // Many spheres are made with their tiles, or later.
+        let few = with_spheres && scene.objects.len() < tiles::WORTHWHILE;
+        let mut spheres = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             surfaces.push(Surface::new(scene, object));
-            let (
-                false,
-                &Shape::Plane {
+            match object.shape {
+                _ if hidden[index] => {}
+                Shape::Plane {
                     normal,
                     point,
                     extent,
-                },
-            ) = (hidden[index], &object.shape)
-            else {
-                continue;
-            };
-            let camera = &scene.camera;
-            planes.extend(Plane::new(
-                camera,
-                view,
-                index,
-                normal,
-                point,
-                extent.as_ref(),
-            ));
-        }
-        let sphere = |(index, object): (usize, &Object)| match object.shape {
-            Shape::Sphere { center, radius } if !hidden[index] => {
-                Sphere::new(scene.camera.viewpoint, &camera, index, center, radius)
+                } => planes.extend(Plane::new(
+                    &scene.camera,
+                    view,
+                    index,
+                    normal,
+                    point,
+                    &extent,
+                )),
+                Shape::Sphere { center, radius } if few => spheres.extend(Sphere::new(
+                    scene.camera.viewpoint,
+                    &camera,
+                    index,
+                    center,
+                    radius,
+                )),
+                Shape::Sphere { .. } => {}
             }
-            _ => None,
-        };
-        // Many are made with their tiles, or later.
-        let few = with_spheres && scene.objects.len() < tiles::WORTHWHILE;
-        let objects = scene.objects.iter().enumerate();
-        let spheres = if few {
-            objects.filter_map(sphere).collect()
-        } else {
-            Vec::new()
-        };
+        }
         let any_clear = scene
             .objects
             .iter()

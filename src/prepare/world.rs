@@ -122,8 +122,7 @@ impl<R: Real> World<R> {
                     point,
                     extent,
                 } => {
-                    let extent =
-                        extent.map(|e| Extent::new(&scene.camera, scale, normal, point, &e));
+                    let extent = Extent::new(&scene.camera, scale, normal, point, &extent);
                     let plane = WorldPlane::new(scene, scale, object, normal, point, extent);
                     world.planes.push(plane);
                 }

@@ -7,7 +7,7 @@ use crate::real::rational::{Ratio, dot, is_zero, power_of_two, ratio, ratio3, su
 use crate::real::{Real, V3};
 use crate::scene::{Light, Scene};
 
-/// A plane or a rectangle of one.
+/// A plane, with its sides if it has any.
 #[derive(Debug, Clone)]
 pub struct WorldPlane<R> {
     /// Index of the object.
@@ -25,8 +25,8 @@ pub struct WorldPlane<R> {
     pub mirror: [V3<R>; 3],
     /// If the plane is perpendicular to an axis: which, and the coordinate that all its points share.
     pub own: Option<(usize, R)>,
-    /// Its rectangle, if it has one.
-    pub extent: Option<Extent<R>>,
+    /// Where it ends.
+    pub extent: Extent<R>,
     /// Lights that lie in the plane exactly, ascending.
     pub level: Vec<usize>,
 }
@@ -39,7 +39,7 @@ impl<R: Real> WorldPlane<R> {
         object: usize,
         normal: DVec3,
         point: DVec3,
-        extent: Option<Extent<R>>,
+        extent: Extent<R>,
     ) -> Self {
         let n = ratio3(normal);
         let from_viewpoint = sub(&ratio3(point), &ratio3(scene.camera.viewpoint));

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::real::V3;
 use crate::real::rational::{dot, ratio, ratio3, sub};
-use crate::real::{Real, V3};
 use crate::scene::{Light, Scene};
 
 /// A sphere.

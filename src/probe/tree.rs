@@ -179,11 +179,16 @@ impl<'a> Tree<'a> {
         let material = tile_material(self.prepared, point)
             .map_or("?", |index| &self.scene.materials[index].name);
         let mut text = format!("material {material}");
-        if let Surface::Textured(textured) = &self.prepared.surfaces[point.object]
-            && let Ok([column, row]) = texel_place(textured, point.position)
-        {
-            let texture = &self.scene.textures[textured.texture].name;
-            text += &format!(", texture {texture} at column {column}, row {row} from the bottom");
+        match &self.prepared.surfaces[point.object] {
+            Surface::Textured(textured) => {
+                if let Ok([column, row]) = texel_place(textured, point.position) {
+                    let texture = &self.scene.textures[textured.texture].name;
+                    text += &format!(
+                        ", texture {texture} at column {column}, row {row} from the bottom"
+                    );
+                }
+            }
+            Surface::Plain | Surface::Tiled(_) | Surface::Pplane(_) | Surface::Psphere(_) => {}
         }
         text
     }

@@ -36,3 +36,25 @@ pub(super) enum Class {
     /// `psphere`
     ProceduralSphere,
 }
+
+impl Kind {
+    /// The entity type in the file.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Camera => "camera",
+            Self::Material => "material",
+            Self::Texture => "texture",
+            Self::Light { spot: false } => "light",
+            Self::Light { spot: true } => "spotlight",
+            Self::Object(class) => match class {
+                Class::Plane => "plane",
+                Class::Tiled => "tiled_plane",
+                Class::ProceduralPlane => "pplane",
+                Class::Finite => "fplane",
+                Class::Textured => "texplane",
+                Class::Sphere => "sphere",
+                Class::ProceduralSphere => "psphere",
+            },
+        }
+    }
+}

@@ -42,8 +42,8 @@ pub use listing::list_model;
 pub(crate) use load::read_file;
 pub use load::{LoadError, MAX_FILE, is_same_file, load, load_from};
 pub use model::{
-    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
-    TextureMode,
+    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Texture, TextureMode,
 };
 pub use parse::parse;
 pub use places::{EntityId, Given, Place, Places, line, places};

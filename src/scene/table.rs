@@ -299,13 +299,12 @@ const AIMLESS: Option<Relation> = Some(Relation {
 });
 
 const fn entity(
-    name: &'static str,
     kind: Kind,
     levels: &'static [&'static [Attribute]],
     relation: Option<Relation>,
 ) -> Entity {
     Entity {
-        name,
+        name: kind.name(),
         kind,
         levels,
         relation,
@@ -313,59 +312,35 @@ const fn entity(
 }
 
 const fn object(
-    name: &'static str,
     class: Class,
     levels: &'static [&'static [Attribute]],
     relation: Option<Relation>,
 ) -> Entity {
-    Entity {
-        name,
-        kind: Kind::Object(class),
-        levels,
-        relation,
-    }
+    entity(Kind::Object(class), levels, relation)
 }
 
 /// All entity types.
 pub(super) static ENTITIES: [Entity; 12] = [
-    entity("camera", Kind::Camera, &[CAMERA], None),
-    entity("material", Kind::Material, &[MATERIAL], None),
-    object("plane", Class::Plane, &[OBJECT, PLANE], None),
-    object("sphere", Class::Sphere, &[OBJECT, SPHERE], None),
+    entity(Kind::Camera, &[CAMERA], None),
+    entity(Kind::Material, &[MATERIAL], None),
+    object(Class::Plane, &[OBJECT, PLANE], None),
+    object(Class::Sphere, &[OBJECT, SPHERE], None),
+    object(Class::Tiled, &[OBJECT, PLANE, TILED], ALONG_NORMAL),
     object(
-        "tiled_plane",
-        Class::Tiled,
-        &[OBJECT, PLANE, TILED],
-        ALONG_NORMAL,
-    ),
-    object(
-        "pplane",
         Class::ProceduralPlane,
         &[OBJECT, PLANE, PROCEDURAL_PLANE],
         None,
     ),
     object(
-        "psphere",
         Class::ProceduralSphere,
         &[OBJECT, SPHERE, PROCEDURAL_SPHERE],
         None,
     ),
+    object(Class::Finite, &[OBJECT, PLANE, FINITE], ALONG_NORMAL),
+    entity(Kind::Light { spot: false }, &[LIGHT], None),
+    entity(Kind::Light { spot: true }, &[LIGHT, SPOT], AIMLESS),
+    entity(Kind::Texture, &[TEXTURE], None),
     object(
-        "fplane",
-        Class::Finite,
-        &[OBJECT, PLANE, FINITE],
-        ALONG_NORMAL,
-    ),
-    entity("light", Kind::Light { spot: false }, &[LIGHT], None),
-    entity(
-        "spotlight",
-        Kind::Light { spot: true },
-        &[LIGHT, SPOT],
-        AIMLESS,
-    ),
-    entity("texture", Kind::Texture, &[TEXTURE], None),
-    object(
-        "texplane",
         Class::Textured,
         &[OBJECT, PLANE, FINITE, TEXTURED],
         ALONG_NORMAL,

@@ -2,6 +2,7 @@
 
 use super::{Light, LitObject, Material, Packed, WorldPlane, WorldSphere, f32x3};
 use crate::gpu::bounds::{U, most, up};
+use crate::prepare::extent::Extent;
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
 
@@ -150,12 +151,10 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
     }
     let zero = V3::exact(glam::DVec3::ZERO);
     let none = Bounded::zero();
-    let (rows, origin, dimensions) = plane
-        .extent
-        .as_ref()
-        .map_or(([zero; 2], [none; 2], [none; 2]), |e| {
-            (e.rows, e.origin, e.dimensions)
-        });
+    let (bounded, rows, origin, dimensions) = match &plane.extent {
+        Extent::Unbounded => (0, [zero; 2], [none; 2], [none; 2]),
+        Extent::Rectangle(r) => (1, r.rows, r.origin, r.dimensions),
+    };
     let most_of = |values: [Bounded; 2]| most(values[0]).max(most(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),
@@ -170,7 +169,7 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         origin_1: origin[1].value as f32,
         lengths: dimensions.map(|d| d.value as f32),
         level: bits(&plane.level),
-        bounded: u32::from(plane.extent.is_some()),
+        bounded,
         highest,
         sides_error: up(8.0 * U * (most_of(origin) + most_of(dimensions))),
         unused: [0.0; 2],

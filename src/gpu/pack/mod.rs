@@ -17,6 +17,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::bounds::{Screen, U, most, up};
+use crate::prepare::plane::Sides;
 use crate::prepare::tiles::Tiles;
 use crate::prepare::{self, Prepared, View};
 use crate::real::{Bounded, V3};
@@ -199,10 +200,11 @@ impl Packed {
         for plane in &scene.planes {
             let group = surfaces.shared(plane.object);
             match &plane.sides {
-                None => self
-                    .planes
-                    .push(primary::plane(&scene.camera, plane, screen, group)),
-                Some(sides) => self.rectangles.push(primary::rectangle(
+                Sides::Unbounded => {
+                    self.planes
+                        .push(primary::plane(&scene.camera, plane, screen, group))
+                }
+                Sides::Rectangle(sides) => self.rectangles.push(primary::rectangle(
                     &scene.camera,
                     plane,
                     sides,
