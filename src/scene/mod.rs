@@ -21,6 +21,7 @@ mod load;
 pub mod model;
 mod names;
 mod number;
+mod numbers;
 mod parse;
 mod places;
 mod recover;
