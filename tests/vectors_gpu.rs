@@ -1,5 +1,6 @@
-//! The known answers of the notes (SEMANTICS, section 8) in WGSL, on the GPU: the vector operations that plumb's shaders
-//! are made of, and the ray of a pixel by `shaders/camera.wgsl` itself, as plumb composes it. Without an adapter they fail.
+//! The known answers of the notes (docs/SCENE.md, "The notes' known answers") in WGSL, on the GPU: the vector operations
+//! that plumb's shaders are made of, and the ray of a pixel by `shaders/camera.wgsl` itself, as plumb composes it. Without
+//! an adapter they fail.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DVec2, DVec3};

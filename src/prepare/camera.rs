@@ -1,4 +1,5 @@
-//! From pixels to rays (SEMANTICS: the world point of pixel (x, y) is worlddim · (x, y) / (pixeldim − 1), z = 0).
+//! From pixels to rays: the world point of pixel (x, y) is worlddim · (x, y) / (pixeldim − 1), z = 0 (docs/SCENE.md,
+//! "Rays").
 
 use crate::real::Real;
 use crate::real::rational::{Ratio, power_of_two, ratio};

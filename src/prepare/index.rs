@@ -210,7 +210,8 @@ mod tests {
     use super::*;
     use crate::scene::load;
 
-    /// What SEMANTICS says an index is, at the hit of the ray through a pixel; None where that misses.
+    /// What docs/SCENE.md ("What a surface reflects") says an index is, at the hit of the ray through a pixel; None
+    /// where that misses.
     fn directly(scene: &Scene, object: &Object, which: usize, pixel: [u32; 2]) -> Option<Ratio> {
         let Shape::Plane {
             normal,

@@ -1,7 +1,8 @@
 //! What depends on the scene alone, computed once, on the host, before anything is rounded to f32.
 //!
 //! Stands between `scene` (what the file says) and the two tracers: `cpu` runs on a [`Prepared`] over its own number
-//! type, `gpu::pack` rounds a `Prepared<Bounded>` to f32. Two rules make f32 enough for nearly every pixel (docs/NUMERICS.md):
+//! type, `gpu::pack` rounds a `Prepared<Bounded>` to f32. Two rules make f32 enough for nearly every pixel
+//! (docs/NUMERICS.md):
 //!
 //! - **The viewpoint is the origin, and lengths are in units of 2^scale**, the power of two next below the viewpoint's z.
 //!   Every ray starts at the origin; differences from the viewpoint are taken here, where there are bits to lose.

@@ -1,4 +1,4 @@
-//! f64 as a [`Real`]: what people read, and what the GPU's tables are rounded from.
+//! f64 as a [`Real`]: what people read, and what a pixel is presumed to be that no other number type decides.
 
 use std::cmp::Ordering;
 

@@ -1,5 +1,5 @@
-//! Where a line meets the objects (SEMANTICS 3), each at most once, nearest first: all that closest hits, shadows and rays
-//! straight through ask for.
+//! Where a line meets the objects (docs/SCENE.md, "Hits"), each at most once, nearest first: all that closest hits,
+//! shadows and rays straight through ask for.
 //!
 //! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface. Parameters,
 //! not distances: the direction has any length.

@@ -1,7 +1,7 @@
-//! Exact numbers: rationals, and fields that grow out of them by up to four square roots.
+//! Exact numbers: rationals, and fields that grow out of them by up to six square roots (`MOST_ROOTS` in `decide`).
 //!
-//! K₀ = ℚ, K₍ᵢ₊₁₎ = Kᵢ(√cᵢ) with cᵢ > 0 in Kᵢ that has no root there. An element of K₍ᵢ₊₁₎ is a + b√cᵢ with a and b in Kᵢ, in
-//! one way only; so it is 0 just if all coefficients are. That is what proves a tie.
+//! K₀ = ℚ, K₍ᵢ₊₁₎ = Kᵢ(√cᵢ) with cᵢ > 0 in Kᵢ that has no root there. An element of K₍ᵢ₊₁₎ is a + b√cᵢ with a and b in
+//! Kᵢ, in one way only; so it is 0 just if all coefficients are. That is what proves a tie.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
