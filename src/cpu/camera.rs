@@ -1,4 +1,4 @@
-//! Twin of `shaders/camera.wgsl`: from a pixel to its ray, from a colour to its bytes.
+//! From a pixel to its ray, from a colour to its bytes. Referee of `shaders/camera.wgsl`.
 
 use crate::prepare::Camera;
 use crate::real::rational::two_to;

@@ -1,4 +1,4 @@
-//! Twin of `shaders/light.wgsl`: what a light brings to a hit point.
+//! What a light brings to a hit point. Referee of `shaders/light.wgsl`.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! Twin of `shaders/plane.wgsl`.
+//! Where rays meet a plane, and whether that is within its sides. Referee of `shaders/plane.wgsl`.
 
 use std::cmp::Ordering;
 

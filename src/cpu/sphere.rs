@@ -1,4 +1,4 @@
-//! Twin of `shaders/sphere.wgsl`.
+//! Where rays meet a sphere. Referee of `shaders/sphere.wgsl`.
 
 use super::camera::Ray;
 use crate::prepare::{Camera, Sphere, WorldSphere};

@@ -1,4 +1,4 @@
-//! Twin of `shaders/surface.wgsl`: the reflectivity of an object at a hit.
+//! The reflectivity of an object at a hit. Referee of `shaders/surface.wgsl`.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! Twin of `shaders/closest.wgsl`, `point.wgsl` and `trace.wgsl`: the closest hit of a primary ray, and the colour that a ray brings.
+//! The closest hit of a primary ray, and the colour that a ray brings. Referee of `shaders/closest.wgsl`, `point.wgsl`
+//! and `trace.wgsl`.
 
 use super::camera::{Ray, camera_getdir, inverse_distance};
 use super::light::{Lit, light_term, normal_at};

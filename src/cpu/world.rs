@@ -1,4 +1,4 @@
-//! Twin of `shaders/world.wgsl`: what a ray from anywhere meets first.
+//! What a ray from anywhere meets first. Referee of `shaders/world.wgsl`.
 
 use super::bvh::{at_most, bvh_hits};
 use super::plane::plane_hits_from;
