@@ -1,4 +1,4 @@
-// The tree over many spheres: which of them a ray may hit. Twin: src/cpu/bvh.rs.
+// The tree over many spheres: which of them a ray may hit. Referee: src/cpu/bvh.rs.
 
 //#insert struct BvhNode
 

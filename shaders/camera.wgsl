@@ -1,4 +1,5 @@
-// From a pixel to its ray, from a colour to its bytes. Twin: src/cpu/camera.rs.
+// From a pixel to its ray, from a colour to its bytes. Twin of `camera_setpix`, the same in f32 on the CPU:
+// src/certify/lanes/shade.rs. Referee: src/cpu/camera.rs.
 //
 // In all files a line that ends in //~ is there only where pixels are certified: it carries an error bound or asks one.
 // Bounds are derived in docs/NUMERICS.md; U and the constants named after what they bound come from the host.

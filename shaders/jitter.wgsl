@@ -1,4 +1,5 @@
-// Where in its pixel a sample's ray passes: the PCG 3D hash of Jarzynski and Olano. Twin: `hash` in src/jitter.rs.
+// Where in its pixel a sample's ray passes: the PCG 3D hash of Jarzynski and Olano. `hash` in src/jitter.rs has the
+// same steps, to the bit.
 fn jitter_hash(pixel: vec2i, number: u32) -> vec2f {
     var v = vec3u(vec2u(pixel), number) * 1664525u + 1013904223u;
     v.x += v.y * v.z;

@@ -1,4 +1,4 @@
-// What a light brings to a hit point. Twin: src/cpu/light.rs.
+// What a light brings to a hit point. Referee: src/cpu/light.rs.
 
 //#insert struct Light
 

@@ -1,4 +1,4 @@
-// Where a ray hit, and what a surface is like there. Twin: locate in src/cpu/trace.rs.
+// Where a ray hit, and what a surface is like there. Referee: `locate` in src/cpu/trace.rs.
 
 //#if lit
 

@@ -1,4 +1,4 @@
-// What a ray from anywhere meets first. Twin: src/cpu/world.rs.
+// What a ray from anywhere meets first. Referee: src/cpu/world.rs.
 
 // A ray from anywhere; positions are from the viewpoint.
 struct Beam {

@@ -4,7 +4,8 @@
 //! alone; the course's sequence runs through the whole picture, and is kept at checkpoints.
 
 /// The offsets of sample `sample` of pixel (x, y), y from the bottom: the PCG 3D hash of Jarzynski and Olano ("Hash
-/// Functions for GPU Rendering", 2020), ten bits of it. `shaders/jitter.wgsl` is its twin.
+/// Functions for GPU Rendering", 2020), ten bits of it. `shaders/jitter.wgsl` has the same steps:
+/// docs/SCENE.md prescribes them, to the bit.
 pub fn hash(x: u32, y: u32, sample: u32) -> [f64; 2] {
     let start = |v: u32| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     let (mut p, mut q, mut r) = (start(x), start(y), start(sample));

@@ -6,7 +6,7 @@ mod common;
 use common::{on, picture};
 use glam::{DVec2, DVec3};
 use plumb::render::{Backend, Settings, Spread, render};
-use plumb::scene::{Camera, Light, Material, Object, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Light, Material, Object, Scene, Shape, Surface};
 
 fn scene(pixeldim: [u32; 2], objects: Vec<Object>) -> Scene {
     let material = |name: &str, ambient| Material {
@@ -36,7 +36,7 @@ fn wall(z: f64, material: usize) -> Object {
     let shape = Shape::Plane {
         normal: DVec3::Z,
         point: DVec3::new(0.0, 0.0, z),
-        extent: None,
+        extent: Extent::Unbounded,
     };
     Object {
         name: "wall".into(),

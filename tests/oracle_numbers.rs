@@ -1,6 +1,6 @@
 //! The oracle's own arithmetic: balls hold what they must and are small, towers find zeros and only zeros, cosines are right.
 //!
-//! What the oracle says about pictures rests on this and on the text of SEMANTICS.
+//! What the oracle says about pictures rests on this and on the text of docs/SCENE.md.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod oracle;

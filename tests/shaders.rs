@@ -11,8 +11,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, Settings, Spread};
 use plumb::scene::{
-    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
-    TextureMode,
+    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Texture, TextureMode,
 };
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature::Feature;
@@ -84,7 +84,7 @@ fn plane(normal: DVec3, point: DVec3, surface: Surface) -> Object {
     let shape = Shape::Plane {
         normal,
         point,
-        extent: None,
+        extent: Extent::Unbounded,
     };
     Object {
         name: "p".into(),
@@ -177,7 +177,7 @@ fn of_material(material: usize, object: Object) -> Object {
 }
 
 fn rectangle(surface: Surface) -> Object {
-    let extent = Some(Extent {
+    let extent = Extent::Rectangle(Rectangle {
         xdir: DVec3::X,
         dimensions: DVec2::new(2.0, 3.0),
     });

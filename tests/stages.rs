@@ -9,7 +9,6 @@ use plumb::cpu::pixel::Stages;
 use plumb::cpu::trace::{Limits, Unwatched, ray_trace};
 use plumb::frame::{Part, Stage};
 use plumb::jitter::{self, Sampling};
-use plumb::prepare::later::Laters;
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Bounded, Lazy, Real};
 use plumb::scene::{Scene, load_from};
@@ -36,12 +35,7 @@ fn off(scale: f64) -> (usize, usize, usize) {
         let scene = common::read(&path);
         let bounds = Prepared::<Bounded>::new(&scene, 0.0);
         Lazy::clear();
-        let exact = Prepared::again(
-            &scene,
-            View::from(0.0),
-            &bounds,
-            &Laters::new(&scene, &bounds),
-        );
+        let exact = Prepared::again(&scene, View::from(0.0), &bounds, &bounds.laters(&scene));
         let end = Lazy::mark();
         let [width, height] = scene.camera.pixeldim;
         for i in 0..12 {
@@ -223,7 +217,7 @@ fn of_many_spheres_only_those_near_the_ray_are_made_exact() {
     }
     let scene = scene(&text);
     let bounds = Prepared::<Bounded>::new(&scene, 0.0);
-    let laters = Laters::new(&scene, &bounds);
+    let laters = bounds.laters(&scene);
     Lazy::clear();
     let exact = Prepared::<Lazy>::again(&scene, View::from(0.0), &bounds, &laters);
     assert!(exact.spheres.is_empty() && exact.sphere_count() == bounds.spheres.len());

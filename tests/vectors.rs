@@ -1,4 +1,5 @@
-//! Every known answer of the notes about vectors, matrices and rays (SEMANTICS, section 8), to the digits printed there.
+//! Every known answer of the notes about vectors, matrices and rays (docs/SCENE.md, "The notes' known answers"), to the
+//! digits printed there.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DMat3, DVec2, DVec3};

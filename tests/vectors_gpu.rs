@@ -1,12 +1,13 @@
-//! The known answers of the notes (SEMANTICS, section 8) in WGSL, on the GPU: the vector operations that plumb's shaders
-//! are made of, and the ray of a pixel by `shaders/camera.wgsl` itself, as plumb composes it. Without an adapter they fail.
+//! The known answers of the notes (docs/SCENE.md, "The notes' known answers") in WGSL, on the GPU: the vector operations
+//! that plumb's shaders are made of, and the ray of a pixel by `shaders/camera.wgsl` itself, as plumb composes it. Without
+//! an adapter they fail.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DVec2, DVec3};
 use plumb::gpu::device::{self, Gpu};
 use plumb::prepare;
 use plumb::render::Settings;
-use plumb::scene::{Camera, Material, Object, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Material, Object, Scene, Shape, Surface};
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
@@ -353,7 +354,7 @@ mod pixel_to_ray {
         let shape = Shape::Plane {
             normal: DVec3::Z,
             point: DVec3::new(0.0, 0.0, -5.0),
-            extent: None,
+            extent: Extent::Unbounded,
         };
         Scene {
             camera: Camera {

@@ -1,4 +1,4 @@
-// The entry point: from pixels to rays, from colours to bytes and verdicts. Twin: src/cpu/pixel.rs.
+// The entry point: from pixels to rays, from colours to bytes and verdicts. Referee: src/cpu/pixel.rs.
 //#if partial
 
 // Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.

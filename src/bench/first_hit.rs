@@ -7,7 +7,7 @@ use super::truth::{Met, Seen};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Pipeline;
-use crate::prepare::exact::two_to;
+use crate::real::rational::two_to;
 use crate::settings::Settings;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::feature_set::FeatureSet;

@@ -1,7 +1,7 @@
 //! Where the labels of a plot's points stand, so that none covers another.
 
-use super::plot::MARK;
-
+/// Half a marker.
+pub(super) const MARK: f64 = 5.0;
 /// Half the height of a line of text.
 pub(super) const LINE: f64 = 7.0;
 /// About the width of a character.

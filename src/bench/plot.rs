@@ -1,7 +1,7 @@
 //! The report as a picture: time across, error up, a panel a scene, a point a way, and the front that nothing beats. Told apart
 //! by shape and fill, so that black and white will do.
 
-use super::labels::{LINE, labels};
+use super::labels::{LINE, MARK, labels};
 use super::statistics::pareto;
 use super::svg::{Anchor, Svg};
 use super::table::short;
@@ -17,8 +17,6 @@ const HEAD: f64 = 56.0;
 const FOOT: f64 = 58.0;
 /// Height of the strip for pictures without a wrong pixel.
 const FLOOR: f64 = 64.0;
-/// Half a marker.
-pub(super) const MARK: f64 = 5.0;
 
 /// Draws the report.
 #[must_use]

@@ -9,7 +9,7 @@ use crate::cpu::light::Lit;
 use crate::cpu::surface::Point;
 use crate::cpu::trace::{Branch, Fault, Limits, Unmet, Watch, find_closest_object, ray_trace};
 use crate::prepare::Prepared;
-use crate::prepare::exact::two_to;
+use crate::real::rational::two_to;
 use crate::real::{Bounded, Real, V3};
 use crate::scene::Scene;
 use crate::settings::Settings;

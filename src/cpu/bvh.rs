@@ -1,4 +1,4 @@
-//! Twin of `shaders/bvh.wgsl`: which of many spheres a ray may hit.
+//! Which of many spheres a ray may hit. Referee of `shaders/bvh.wgsl`.
 
 use crate::prepare::bvh::{Bvh, SLACK};
 use crate::real::{Bounded, Real, Undecided, V3};

@@ -1,6 +1,7 @@
-//! Twin of `shaders/camera.wgsl`: from a pixel to its ray, from a colour to its bytes.
+//! From a pixel to its ray, from a colour to its bytes. Referee of `shaders/camera.wgsl`.
 
-use crate::prepare::{Camera, exact::two_to};
+use crate::prepare::Camera;
+use crate::real::rational::two_to;
 use crate::real::{Real, Undecided, V3};
 
 /// A primary ray: base viewpoint (the origin), direction W through the screen, not of unit length.

@@ -1,12 +1,12 @@
-//! Twin of `shaders/light.wgsl`: what a light brings to a hit point.
+//! What a light brings to a hit point. Referee of `shaders/light.wgsl`.
 
 use std::cmp::Ordering;
 
 use super::bvh::at_most;
 use super::surface::{Point, getdiff, tile_material};
 use super::world::{Met, Range, Toward, hits_from};
-use crate::prepare::exact::two_to;
 use crate::prepare::{Light, Prepared, World};
+use crate::real::rational::two_to;
 use crate::real::{Real, Undecided, V3};
 
 /// What a light does at a hit point.

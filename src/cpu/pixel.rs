@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 
 use super::camera::{camera_getdir, camera_setpix, inverse_distance};
-use super::debug::hit_point;
+use super::hit_point::hit_point;
 use super::trace::{Fault, Limits, Unwatched, find_closest_object, ray_trace};
 use crate::frame::{Decided, Part, PixelFault, Stage};
 use crate::jitter::{self, Sampling};
@@ -311,9 +311,7 @@ impl<'a> Stages<'a> {
             Some((Rc::clone(&own.prepared), own.end))
         });
         let (prepared, end) = own.unwrap_or_else(|| {
-            let laters = self
-                .laters
-                .get_or_init(|| Laters::new(self.scene, &self.bounded));
+            let laters = self.laters.get_or_init(|| self.bounded.laters(self.scene));
             Lazy::clear();
             let prepared = Prepared::again(self.scene, self.view, &self.bounded, laters);
             let (prepared, end) = (Rc::new(prepared), Lazy::mark());

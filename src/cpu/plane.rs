@@ -1,10 +1,10 @@
-//! Twin of `shaders/plane.wgsl`.
+//! Where rays meet a plane, and whether that is within its sides. Referee of `shaders/plane.wgsl`.
 
 use std::cmp::Ordering;
 
 use super::camera::Ray;
-use crate::prepare::Plane;
-use crate::prepare::world::WorldPlane;
+use crate::prepare::extent::Extent;
+use crate::prepare::{Plane, WorldPlane};
 use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the hit on the plane, or None for a miss.
@@ -22,13 +22,9 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
     if !inverse.positive()? {
         return Ok(None);
     }
-    if let Some(sides) = &plane.sides {
-        for (form, dimension) in sides.forms.iter().zip(sides.dimensions) {
-            // 0 ≤ p ≤ d, all times 1/s.
-            let p = along(form);
-            if !p.non_negative()? || !(dimension * inverse - p).non_negative()? {
-                return Ok(None);
-            }
+    for side in plane.sides.all() {
+        if !along(&side.form).non_negative()? {
+            return Ok(None);
         }
     }
     Ok(Some(inverse))
@@ -56,14 +52,14 @@ pub fn plane_hits_from<R: Real>(
     if !(highest - position.z).non_negative()? {
         return Ok(None);
     }
-    if let Some(extent) = &plane.extent {
-        for (p, dimension) in extent
-            .coordinates(position)
-            .into_iter()
-            .zip(extent.dimensions)
-        {
-            if !p.non_negative()? || !(dimension - p).non_negative()? {
-                return Ok(None);
+    match &plane.extent {
+        Extent::Unbounded => {}
+        Extent::Rectangle(rectangle) => {
+            let coordinates = rectangle.coordinates(position);
+            for (p, length) in coordinates.into_iter().zip(rectangle.dimensions) {
+                if !p.non_negative()? || !(length - p).non_negative()? {
+                    return Ok(None);
+                }
             }
         }
     }

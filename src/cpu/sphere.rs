@@ -1,8 +1,7 @@
-//! Twin of `shaders/sphere.wgsl`.
+//! Where rays meet a sphere. Referee of `shaders/sphere.wgsl`.
 
 use super::camera::Ray;
-use crate::prepare::world::WorldSphere;
-use crate::prepare::{Camera, Sphere};
+use crate::prepare::{Camera, Sphere, WorldSphere};
 use crate::real::{Real, Undecided, V3};
 
 /// 1/s of the nearer hit on the sphere, or None for a miss; a tangent ray misses.

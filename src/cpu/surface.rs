@@ -1,4 +1,4 @@
-//! Twin of `shaders/surface.wgsl`: the reflectivity of an object at a hit.
+//! The reflectivity of an object at a hit. Referee of `shaders/surface.wgsl`.
 
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::prepare::{Prepared, Surface};
@@ -44,7 +44,9 @@ pub struct Point<R> {
 pub fn tile_material<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<usize, Undecided> {
     match &scene.surfaces[at.object] {
         Surface::Tiled(tiled) => Ok(tiled.materials[tplane_odd(tiled, at.position)?]),
-        _ => Ok(scene.materials[at.object]),
+        Surface::Plain | Surface::Pplane(_) | Surface::Psphere(_) | Surface::Textured(_) => {
+            Ok(scene.materials[at.object])
+        }
     }
 }
 
@@ -77,7 +79,10 @@ pub fn getdiff<R: Real>(scene: &Prepared<R>, at: &Point<R>) -> Result<V3<R>, Und
     let diffuse = scene.palette[tile_material(scene, at)?].diffuse;
     match &scene.surfaces[at.object] {
         Surface::Textured(textured) => Ok(diffuse.each(texel(scene, textured, at.position)?)),
-        _ => Ok(diffuse),
+        // The material is the tile's, and a procedural surface is ambient alone.
+        Surface::Plain | Surface::Tiled(_) | Surface::Pplane(_) | Surface::Psphere(_) => {
+            Ok(diffuse)
+        }
     }
 }
 
@@ -97,7 +102,7 @@ pub fn texel_place<R: Real>(
     textured: &Textured<R>,
     position: V3<R>,
 ) -> Result<[usize; 2], Undecided> {
-    let p = textured.extent.coordinates(position);
+    let p = textured.rectangle.coordinates(position);
     let mut place = [0; 2];
     for (i, place) in place.iter_mut().enumerate() {
         let index = p[i] * textured.per_unit[i];

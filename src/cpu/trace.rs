@@ -1,4 +1,5 @@
-//! Twin of `shaders/closest.wgsl`, `point.wgsl` and `trace.wgsl`: the closest hit of a primary ray, and the colour that a ray brings.
+//! The closest hit of a primary ray, and the colour that a ray brings. Referee of `shaders/closest.wgsl`, `point.wgsl`
+//! and `trace.wgsl`.
 
 use super::camera::{Ray, camera_getdir, inverse_distance};
 use super::light::{Lit, light_term, normal_at};
@@ -6,8 +7,8 @@ use super::plane::{on_plane, plane_hits};
 use super::sphere::{sphere_from_center, sphere_hits};
 use super::surface::{Point, getamb};
 use super::world::{Range, closest_from};
-use crate::prepare::exact::two_to;
 use crate::prepare::{Prepared, Surface, World};
+use crate::real::rational::two_to;
 use crate::real::{Bounded, Real, Undecided, V3};
 
 pub use super::watch::{Branch, RayKind, Unmet, Unwatched, Watch};

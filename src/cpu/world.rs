@@ -1,4 +1,4 @@
-//! Twin of `shaders/world.wgsl`: what a ray from anywhere meets first.
+//! What a ray from anywhere meets first. Referee of `shaders/world.wgsl`.
 
 use super::bvh::{at_most, bvh_hits};
 use super::plane::plane_hits_from;
@@ -77,82 +77,17 @@ pub fn hits_from<R: Real>(
     range: &Range<R>,
     take: &mut impl FnMut(Met<R>) -> Result<f64, Undecided>,
 ) -> Result<(), Undecided> {
-    let before_light = |t: R| {
-        range
-            .light
-            .as_ref()
-            .map_or(Ok(true), |light| (light.distance - t).positive())
-    };
-    let mut reach = match &range.light {
-        Some(light) if world.bvh.is_some() => at_most(light.distance),
-        _ => f64::INFINITY,
-    };
-    for plane in &world.planes {
-        let mark = R::mark();
-        if range.skip == Some(world.groups[plane.object]) || ends_at(range, &plane.level) {
-            continue;
-        }
-        if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)?
-            && before_light(t)?
-        {
-            let zero = V3::new(R::zero(), R::zero(), R::zero());
-            reach = take(Met {
-                t,
-                point: Point {
-                    object: plane.object,
-                    position,
-                    from_center: zero,
-                },
-            })?;
-            if reach < 0.0 {
-                return Ok(());
-            }
-        } else {
-            R::release(mark);
-        }
+    let mut reach = planes_from(world, base, dir, range, take)?;
+    if reach < 0.0 {
+        return Ok(());
     }
     let after_planes = reach;
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
         let mark = R::mark();
-        let made;
-        let sphere = match world.spheres.get(index) {
-            Some(sphere) => sphere,
-            None => {
-                made = world.make_sphere(index);
-                match &made {
-                    Some(sphere) => sphere,
-                    None => return Err(Undecided),
-                }
-            }
-        };
-        let skipped = range.skip == Some(world.groups[sphere.object]);
-        // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
-        let entry = |light: usize| {
-            (world.lights[light].location - sphere.center)
-                .dot(dir)
-                .positive()
-        };
-        let at_light = match &range.light {
-            Some(light) if sphere.level.binary_search(&light.number).is_ok() => {
-                !entry(light.number)?
-            }
-            _ => false,
-        };
-        let asked = !skipped && !at_light && reach >= 0.0;
-        if asked
-            && let Some(t) = sphere_hits_from(sphere, base, dir)?
-            && before_light(t)?
+        if reach >= 0.0
+            && let Some(met) = sphere_from(world, index, base, dir, range)?
         {
-            let position = base + dir * t;
-            let from_center = position - sphere.center;
-            reach = take(Met {
-                t,
-                point: Point {
-                    object: sphere.object,
-                    position,
-                    from_center,
-                },
-            })?;
+            reach = take(met)?;
         } else {
             R::release(mark);
         }
@@ -169,10 +104,106 @@ pub fn hits_from<R: Real>(
     Ok(())
 }
 
-/// Whether a shadow ray's light lies in the plane: then they meet at the light, not before it, or not at all.
-fn ends_at<R>(range: &Range<R>, level: &[usize]) -> bool {
-    range
-        .light
-        .as_ref()
-        .is_some_and(|light| level.binary_search(&light.number).is_ok())
+/// Calls `take` with every plane that the ray meets in range, and returns how far hits still matter.
+fn planes_from<R: Real>(
+    world: &World<R>,
+    base: V3<R>,
+    dir: V3<R>,
+    range: &Range<R>,
+    take: &mut impl FnMut(Met<R>) -> Result<f64, Undecided>,
+) -> Result<f64, Undecided> {
+    let mut reach = match &range.light {
+        Some(light) if world.bvh.is_some() => at_most(light.distance),
+        _ => f64::INFINITY,
+    };
+    for plane in &world.planes {
+        let mark = R::mark();
+        if range.skip == Some(world.groups[plane.object]) || range.ends_on(&plane.level) {
+            continue;
+        }
+        if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)?
+            && range.reaches(t)?
+        {
+            let zero = V3::new(R::zero(), R::zero(), R::zero());
+            reach = take(Met {
+                t,
+                point: Point {
+                    object: plane.object,
+                    position,
+                    from_center: zero,
+                },
+            })?;
+            if reach < 0.0 {
+                break;
+            }
+        } else {
+            R::release(mark);
+        }
+    }
+    Ok(reach)
+}
+
+/// The hit of the sphere of this place, if it is in range.
+fn sphere_from<R: Real>(
+    world: &World<R>,
+    index: usize,
+    base: V3<R>,
+    dir: V3<R>,
+    range: &Range<R>,
+) -> Result<Option<Met<R>>, Undecided> {
+    let made;
+    let sphere = match world.spheres.get(index) {
+        Some(sphere) => sphere,
+        None => {
+            made = world.make_sphere(index);
+            match &made {
+                Some(sphere) => sphere,
+                None => return Err(Undecided),
+            }
+        }
+    };
+    if range.skip == Some(world.groups[sphere.object]) {
+        return Ok(None);
+    }
+    if let Some(light) = &range.light
+        && range.ends_on(&sphere.level)
+    {
+        // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
+        let to_light = world.lights[light.number].location - sphere.center;
+        if !to_light.dot(dir).positive()? {
+            return Ok(None);
+        }
+    }
+    let Some(t) = sphere_hits_from(sphere, base, dir)? else {
+        return Ok(None);
+    };
+    if !range.reaches(t)? {
+        return Ok(None);
+    }
+    let position = base + dir * t;
+    Ok(Some(Met {
+        t,
+        point: Point {
+            object: sphere.object,
+            position,
+            from_center: position - sphere.center,
+        },
+    }))
+}
+
+impl<R: Real> Range<R> {
+    /// Whether a hit at this distance counts: a shadow ray's does before the light.
+    fn reaches(&self, t: R) -> Result<bool, Undecided> {
+        self.light
+            .as_ref()
+            .map_or(Ok(true), |light| (light.distance - t).positive())
+    }
+
+    /// Whether a shadow ray's light is among these, which lie on a surface. On a plane, they meet at the light, not
+    /// before it, or not at all.
+    fn ends_on(&self, level: &[usize]) -> bool {
+        self.light
+            .as_ref()
+            .is_some_and(|light| level.binary_search(&light.number).is_ok())
+    }
 }

@@ -10,7 +10,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
-use super::world::WorldSphere;
+use super::world_sphere::WorldSphere;
 use crate::real::Real;
 
 /// The tree. The spheres it holds stand in its order: a leaf's are `first..first + count`.

@@ -1,7 +1,8 @@
-//! From pixels to rays (SEMANTICS: the world point of pixel (x, y) is worlddim · (x, y) / (pixeldim − 1), z = 0).
+//! From pixels to rays: the world point of pixel (x, y) is worlddim · (x, y) / (pixeldim − 1), z = 0 (docs/SCENE.md,
+//! "Rays").
 
-use super::exact::{Ratio, power_of_two, ratio};
 use crate::real::Real;
+use crate::real::rational::{Ratio, power_of_two, ratio};
 use crate::scene;
 
 /// How a pixel becomes a ray: its direction W = world point − viewpoint, in units of 2^scale, not of unit length.

@@ -8,11 +8,11 @@ use dashu_int::IBig;
 use glam::DVec3;
 
 use super::camera::over_pixels;
-use super::exact::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
-use super::plane::along_sides;
+use super::extent::along_sides;
 use super::surface::{PPLANE_SHIFT, PPLANE_TILE, TILE_SHIFT};
+use crate::real::rational::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
 use crate::real::{Bounded, Real};
-use crate::scene::{self, Object, Scene, Shape, TextureMode};
+use crate::scene::{self, Extent, Object, Scene, Shape, TextureMode};
 
 /// An index before its floor is taken: top·(x, y, 1) / bottom·(x, y, 1) at the pixel (x, y), where the plane is met if the
 /// divisor is > 0.
@@ -33,13 +33,14 @@ struct Seen<'a> {
 /// The indices that the surface of an object asks for, in the order in which its shader names them; None for one whose
 /// direction is not rational. Empty for surfaces that ask for none.
 pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
-    let Shape::Plane {
-        normal,
-        point,
-        extent,
-    } = &object.shape
-    else {
-        return Vec::new();
+    let (normal, point, extent) = match &object.shape {
+        Shape::Plane {
+            normal,
+            point,
+            extent,
+        } => (normal, point, extent),
+        // Its hits are no quotients of linear forms.
+        Shape::Sphere { .. } => return Vec::new(),
     };
     let seen = Seen {
         camera: &scene.camera,
@@ -69,23 +70,25 @@ pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
                 .collect()
         }
         scene::Surface::Textured { texture, mode } => {
-            let Some(extent) = extent else {
-                return Vec::new();
+            let rectangle = match extent {
+                Extent::Rectangle(rectangle) => rectangle,
+                // A picture is on nothing else.
+                Extent::Unbounded => return Vec::new(),
             };
             let texels = &scene.textures[texture].texels;
             let counts = [texels.width, texels.height].map(|n| ratio(f64::from(n)));
             let camera = &scene.camera;
             let sizes = match mode {
                 TextureMode::Fit => [
-                    ratio(extent.dimensions.x) / &counts[0],
-                    ratio(extent.dimensions.y) / &counts[1],
+                    ratio(rectangle.dimensions.x) / &counts[0],
+                    ratio(rectangle.dimensions.y) / &counts[1],
                 ],
                 TextureMode::Tile => [
                     ratio(camera.worlddim.x) / ratio(f64::from(camera.pixeldim[0])),
                     ratio(camera.worlddim.y) / ratio(f64::from(camera.pixeldim[1])),
                 ],
             };
-            seen.rows(extent.xdir)
+            seen.rows(rectangle.xdir)
                 .iter()
                 .zip(&sizes)
                 .map(|(row, size)| {
@@ -205,10 +208,10 @@ const WHOLE: f64 = (1_u64 << 52) as f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepare::exact::is_zero;
     use crate::scene::load;
 
-    /// What SEMANTICS says an index is, at the hit of the ray through a pixel; None where that misses.
+    /// What docs/SCENE.md ("What a surface reflects") says an index is, at the hit of the ray through a pixel; None
+    /// where that misses.
     fn directly(scene: &Scene, object: &Object, which: usize, pixel: [u32; 2]) -> Option<Ratio> {
         let Shape::Plane {
             normal,
@@ -267,13 +270,15 @@ mod tests {
             }
             scene::Surface::Procedural { .. } => ratio(2.0) * &h[which] + ratio(1000.0),
             scene::Surface::Textured { texture, mode } => {
-                let extent = extent.unwrap();
-                let p = dot(&side(extent.xdir), &sub(&h, &q));
+                let Extent::Rectangle(rectangle) = extent else {
+                    panic!("no rectangle")
+                };
+                let p = dot(&side(rectangle.xdir), &sub(&h, &q));
                 let texels = &scene.textures[texture].texels;
                 let count = [texels.width, texels.height][which];
                 match mode {
                     TextureMode::Fit => {
-                        p / ratio(extent.dimensions[which]) * ratio(f64::from(count))
+                        p / ratio(rectangle.dimensions[which]) * ratio(f64::from(count))
                     }
                     TextureMode::Tile => {
                         let pixels = f64::from(camera.pixeldim[which]);

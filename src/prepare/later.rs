@@ -1,14 +1,17 @@
 //! Spheres that are made ready one by one, when a ray comes near them: for number types whose numbers take memory.
 //!
-//! The spheres' tree and tiles, and all that is no number, is shared with a scene prepared before in another type.
+//! The spheres' tree and tiles, and all that is no number, is shared with a scene prepared before in another type. The
+//! floor below `world` and `prepared`, which hold a [`Later`] in place of their spheres.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Prepared, Sphere, World, world::WorldSphere};
-use crate::prepare::exact::two_to;
+use super::camera::Camera;
+use super::sphere::Sphere;
+use super::world_sphere::WorldSphere;
+use crate::real::rational::two_to;
 use crate::real::{Real, V3};
 use crate::scene::{Scene, Shape};
 
@@ -18,7 +21,7 @@ pub struct Later {
     viewpoint: DVec3,
     scale: i32,
     /// One for each object: center and radius; of planes nothing.
-    shapes: Arc<Vec<(DVec3, f64)>>,
+    balls: Balls,
     /// The objects that are spheres, in the order of the prepared ones.
     order: Arc<Vec<u32>>,
     /// Lights that lie on spheres, by object.
@@ -32,76 +35,59 @@ pub struct Laters {
     pub(super) world: Option<Later>,
 }
 
-impl Laters {
-    /// For a scene that has been prepared in some number type.
-    pub fn new<R: Real>(scene: &Scene, prepared: &Prepared<R>) -> Self {
-        let world = prepared.world.as_ref();
-        let world_tree = world.and_then(|world| world.bvh.as_ref());
-        if prepared.tiles.is_none() && world_tree.is_none() {
-            return Self::default();
-        }
-        let shape = |shape: &Shape| match *shape {
-            Shape::Sphere { center, radius } => (center, radius),
-            Shape::Plane { .. } => (DVec3::ZERO, 0.0),
-        };
-        let shapes = Arc::new(scene.objects.iter().map(|o| shape(&o.shape)).collect());
-        let later = |order: Vec<u32>, levels| Later {
+/// One for each object of a scene: center and radius; of planes nothing.
+pub(super) type Balls = Arc<Vec<(DVec3, f64)>>;
+
+/// The centers and radii of a scene's spheres.
+pub(super) fn balls(scene: &Scene) -> Balls {
+    let ball = |shape: &Shape| match *shape {
+        Shape::Sphere { center, radius } => (center, radius),
+        Shape::Plane { .. } => (DVec3::ZERO, 0.0),
+    };
+    Arc::new(scene.objects.iter().map(|o| ball(&o.shape)).collect())
+}
+
+impl Later {
+    /// For the spheres that are the objects of `order`, and the lights that lie on some of them.
+    pub(super) fn new(
+        scene: &Scene,
+        scale: i32,
+        balls: &Balls,
+        order: impl Iterator<Item = usize>,
+        levels: HashMap<u32, Vec<usize>>,
+    ) -> Self {
+        Self {
             viewpoint: scene.camera.viewpoint,
-            scale: prepared.camera.scale,
-            shapes: Arc::clone(&shapes),
-            order: Arc::new(order),
+            scale,
+            balls: Arc::clone(balls),
+            order: Arc::new(order.map(|object| object as u32).collect()),
             levels: Arc::new(levels),
-        };
-        let primary = prepared.tiles.as_ref().map(|_| {
-            let order = prepared.spheres.iter().map(|s| s.object as u32);
-            later(order.collect(), HashMap::new())
-        });
-        let world = world.filter(|world| world.bvh.is_some()).map(|world| {
-            let order = world.spheres.iter().map(|s| s.object as u32);
-            let lit = world.spheres.iter().filter(|s| !s.level.is_empty());
-            let levels = lit.map(|s| (s.object as u32, s.level.clone()));
-            later(order.collect(), levels.collect())
-        });
-        Self { primary, world }
-    }
-}
-
-impl<R: Real> Prepared<R> {
-    /// How many spheres a primary ray can hit.
-    pub fn sphere_count(&self) -> usize {
-        self.later
-            .as_ref()
-            .map_or(self.spheres.len(), |later| later.order.len())
+        }
     }
 
-    /// A sphere that is not in `spheres`.
-    pub fn make_sphere(&self, index: usize) -> Option<Sphere<R>> {
-        let later = self.later.as_ref()?;
-        let object = *later.order.get(index)? as usize;
-        let (center, radius) = later.shapes[object];
-        Sphere::new(later.viewpoint, &self.camera, object, center, radius)
-    }
-}
-
-impl<R: Real> World<R> {
     /// How many spheres there are.
-    pub fn sphere_count(&self) -> usize {
-        self.later
-            .as_ref()
-            .map_or(self.spheres.len(), |later| later.order.len())
+    pub(super) fn count(&self) -> usize {
+        self.order.len()
     }
 
-    /// A sphere that is not in `spheres`; there is one for each place below [`sphere_count`](Self::sphere_count).
-    pub fn make_sphere(&self, place: usize) -> Option<WorldSphere<R>> {
-        let later = self.later.as_ref()?;
-        let object = *later.order.get(place)?;
-        let (center, radius) = later.shapes[object as usize];
-        let unit = R::exact(two_to(-later.scale));
+    /// The sphere of this number as primary rays see it.
+    pub(super) fn primary<R: Real>(&self, camera: &Camera<R>, index: usize) -> Option<Sphere<R>> {
+        let object = *self.order.get(index)? as usize;
+        let (center, radius) = self.balls[object];
+        Sphere::new(self.viewpoint, camera, object, center, radius)
+    }
+
+    /// The sphere of this number as rays from anywhere see it.
+    pub(super) fn world<R: Real>(&self, index: usize) -> Option<WorldSphere<R>> {
+        let object = *self.order.get(index)?;
+        let (center, radius) = self.balls[object as usize];
+        let level = self.levels.get(&object).cloned().unwrap_or_default();
+        let (viewpoint, unit) = (V3::exact(self.viewpoint), R::exact(two_to(-self.scale)));
         Some(WorldSphere {
             object: object as usize,
-            center: (V3::exact(center) - V3::exact(later.viewpoint)) * unit,
+            center: (V3::exact(center) - viewpoint) * unit,
             radius: R::exact(radius) * unit,
-            level: later.levels.get(&object).cloned().unwrap_or_default(),
+            level,
         })
     }
 }

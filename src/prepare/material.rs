@@ -1,6 +1,6 @@
 //! Materials and lights in the tracer's number type.
 
-use super::exact::two_to;
+use crate::real::rational::two_to;
 use crate::real::{Real, V3};
 use crate::scene;
 

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::View;
-use super::camera::{origin, over_pixels, step};
-use super::exact::{
-    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub, two_to,
+use super::camera::{self, origin, over_pixels, step};
+use super::extent::{Rectangle, along_sides};
+use super::view::View;
+use crate::real::Real;
+use crate::real::rational::{
+    Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub,
 };
-use crate::real::{Real, V3};
 use crate::scene;
 
 /// A plane that some pixel's ray can hit.
@@ -27,8 +28,8 @@ pub struct Plane<R> {
     pub front: Option<[R; 3]>,
     /// The same where it depends on x or on y alone.
     pub front_step: Option<Step>,
-    /// The sides of a rectangle.
-    pub sides: Option<Sides<R>>,
+    /// Where it ends.
+    pub sides: Sides<R>,
 }
 
 /// A border that runs along a column or a row of pixels, as an exact fact: inside is `pixel[axis] ≥ at`, or `≤ at`.
@@ -58,85 +59,32 @@ impl Step {
     }
 }
 
-/// The rectangle of a finite plane: p_i = rows\[i\]·P − origin\[i\] lies in [0, dimensions\[i\]] for i = 0 and 1.
+/// A side as primary rays see it: inside is where form·(W.x, W.y, 1) ≥ 0.
 #[derive(Debug, Clone)]
-pub struct Extent<R> {
-    /// Unit vectors along the sides: xdir projected onto the plane, and normal × that.
-    pub rows: [V3<R>; 2],
-    /// rows\[i\]·(Q − V).
-    pub origin: [R; 2],
-    /// Lengths of the sides, in units of 2^scale.
-    pub dimensions: [R; 2],
+pub struct Side<R> {
+    /// Coefficients over (W.x, W.y, 1): a form over positions, times 1/s, is linear in the ray.
+    pub form: [R; 3],
+    /// The same border where it runs along a column or row.
+    pub step: Option<Step>,
 }
 
-/// The same as primary rays see it: on the ray s·W, p_i/s = forms\[i\]·(W.x, W.y, 1), linear in the ray.
+/// The sides of a plane as primary rays see them: a hit is inside all of them.
 #[derive(Debug, Clone)]
-pub struct Sides<R> {
-    /// Coefficients of p_i/s over (W.x, W.y, 1).
-    pub forms: [[R; 3]; 2],
-    /// Lengths of the sides, in units of 2^scale.
-    pub dimensions: [R; 2],
-    /// The borders p_0 ≥ 0, p_1 ≥ 0, p_0 ≤ d_0, p_1 ≤ d_1 that run along columns or rows.
-    pub steps: [Option<Step>; 4],
+pub enum Sides<R> {
+    /// There are none: the plane has no end.
+    Unbounded,
+    /// Those of a rectangle, with p and d as in [`Rectangle`]: p₀ ≥ 0, p₁ ≥ 0, p₀ ≤ d₀, p₁ ≤ d₁.
+    Rectangle(Box<[Side<R>; 4]>),
 }
 
-impl<R: Real> Extent<R> {
-    /// Prepares a rectangle, positions from the viewpoint.
-    pub fn new(
-        camera: &scene::Camera,
-        scale: i32,
-        normal: DVec3,
-        point: DVec3,
-        extent: &scene::Extent,
-    ) -> Self {
-        let rows = rows(normal, extent.xdir);
-        let unit = R::exact(two_to(-scale));
-        let corner = (V3::exact(point) - V3::exact(camera.viewpoint)) * unit;
-        Self {
-            rows,
-            origin: rows.map(|row| row.dot(corner)),
-            dimensions: [
-                R::exact(extent.dimensions.x) * unit,
-                R::exact(extent.dimensions.y) * unit,
-            ],
+impl<R> Sides<R> {
+    /// All of them.
+    pub fn all(&self) -> &[Side<R>] {
+        match self {
+            Self::Unbounded => &[],
+            Self::Rectangle(sides) => sides.as_slice(),
         }
     }
-
-    /// The coordinates of a point of the plane along the sides.
-    pub fn coordinates(&self, position: V3<R>) -> [R; 2] {
-        [
-            self.rows[0].dot(position) - self.origin[0],
-            self.rows[1].dot(position) - self.origin[1],
-        ]
-    }
-}
-
-/// A vector along the first side of a rectangle: (N·N)·xdir − (N·xdir)·N, which is rational.
-fn across(n: &[Ratio; 3], x: &[Ratio; 3]) -> [Ratio; 3] {
-    let (nn, nx) = (dot(n, n), dot(n, x));
-    [0, 1, 2].map(|i| &x[i] * &nn - &n[i] * &nx)
-}
-
-/// Vectors along both sides of a rectangle, rational and of any length: the second is N × the first.
-pub(super) fn along_sides(n: &[Ratio; 3], x: &[Ratio; 3]) -> [[Ratio; 3]; 2] {
-    let first = across(n, x);
-    let cross = |i: usize, j: usize| &n[i] * &first[j] - &n[j] * &first[i];
-    let second = [cross(1, 2), cross(2, 0), cross(0, 1)];
-    [first, second]
-}
-
-/// Unit vectors along the sides of a rectangle: R0 = unit(xdir − (N·xdir)N), R1 = N × R0, N of unit length.
-pub fn rows<R: Real>(normal: DVec3, xdir: DVec3) -> [V3<R>; 2] {
-    let across = across(&ratio3(normal), &ratio3(xdir));
-    let largest = across
-        .iter()
-        .cloned()
-        .map(abs)
-        .fold(Ratio::ZERO, |a, b| if b > a { b } else { a });
-    let [a, b, c] = across.map(|c| R::ratio(&(c / &largest)));
-    let r0 = V3::new(a, b, c).unit();
-    let unit_normal = super::world::shortened::<R>(normal).unit();
-    [r0, unit_normal.cross(r0)]
 }
 
 impl<R: Real> Plane<R> {
@@ -147,7 +95,7 @@ impl<R: Real> Plane<R> {
         object: usize,
         normal: DVec3,
         point: DVec3,
-        extent: Option<&scene::Extent>,
+        extent: &scene::Extent,
     ) -> Option<Self> {
         let n = ratio3(normal);
         let v = ratio3(camera.viewpoint);
@@ -164,31 +112,28 @@ impl<R: Real> Plane<R> {
         if front.never {
             return None;
         }
-        let scale = super::camera::exponent(camera.viewpoint.z);
+        let scale = camera::exponent(camera.viewpoint.z);
         let unit = power_of_two(scale);
         let inverse = [
             R::ratio(&(&a * &unit)),
             R::ratio(&(&b * &unit)),
             R::ratio(&c),
         ];
-        let sides = extent.map(|extent| {
-            let steps = side_steps(camera, normal, point, extent, &[&a, &b, &c]);
-            let extent = Extent::<R>::new(camera, scale, normal, point, extent);
-            let distance = R::ratio(&(&v[2] / &unit));
-            let form = |i: usize| {
-                let (row, origin) = (extent.rows[i], extent.origin[i]);
-                [
-                    row.x - origin * inverse[0],
-                    row.y - origin * inverse[1],
-                    -(row.z * distance) - origin * inverse[2],
-                ]
-            };
-            Sides {
-                forms: [form(0), form(1)],
-                dimensions: extent.dimensions,
-                steps,
+        let sides = match extent {
+            scene::Extent::Unbounded => Sides::Unbounded,
+            scene::Extent::Rectangle(rectangle) => {
+                let steps = side_steps(camera, normal, point, rectangle, &[&a, &b, &c]);
+                let distance = R::ratio(&(&v[2] / &unit));
+                let rectangle = Rectangle::<R>::new(camera, scale, normal, point, rectangle);
+                let forms = side_forms(&rectangle, &inverse, distance);
+                let [p0, p1, q0, q1] = forms;
+                let [s0, s1, s2, s3] = steps;
+                Sides::Rectangle(Box::new(
+                    [(p0, s0), (p1, s1), (q0, s2), (q1, s3)]
+                        .map(|(form, step)| Side { form, step }),
+                ))
             }
-        });
+        };
         Some(Self {
             object,
             inverse,
@@ -203,23 +148,44 @@ impl<R: Real> Plane<R> {
     }
 }
 
+/// p₀, p₁, d₀ − p₀ and d₁ − p₁ of a rectangle, all times 1/s, which is `inverse`, over (W.x, W.y, 1); W.z is
+/// −`distance`.
+fn side_forms<R: Real>(rectangle: &Rectangle<R>, inverse: &[R; 3], distance: R) -> [[R; 3]; 4] {
+    let from_start = [0, 1].map(|i| {
+        let (row, origin) = (rectangle.rows[i], rectangle.origin[i]);
+        [
+            row.x - origin * inverse[0],
+            row.y - origin * inverse[1],
+            -(row.z * distance) - origin * inverse[2],
+        ]
+    });
+    let to_end = [0, 1].map(|i| {
+        let (p, length) = (from_start[i], rectangle.dimensions[i]);
+        [0, 1, 2].map(|k| length * inverse[k] - p[k])
+    });
+    [from_start[0], from_start[1], to_end[0], to_end[1]]
+}
+
 /// The sides that run along columns or rows; `inverse` is 1/s over (W.x, W.y, 1) in world units.
 fn side_steps(
     camera: &scene::Camera,
     normal: DVec3,
     point: DVec3,
-    extent: &scene::Extent,
+    rectangle: &scene::Rectangle,
     inverse: &[&Ratio; 3],
 ) -> [Option<Step>; 4] {
     let v = ratio3(camera.viewpoint);
     let n = ratio3(normal);
     let corner = sub(&ratio3(point), &v);
-    let [first, second] = along_sides(&n, &ratio3(extent.xdir));
+    let [first, second] = along_sides(&n, &ratio3(rectangle.xdir));
     let q = over_pixels(camera, &inverse.map(Clone::clone));
     let mut steps = [None, None, None, None];
-    for (i, (row, dimension)) in [(first, extent.dimensions.x), (second, extent.dimensions.y)]
-        .into_iter()
-        .enumerate()
+    for (i, (row, dimension)) in [
+        (first, rectangle.dimensions.x),
+        (second, rectangle.dimensions.y),
+    ]
+    .into_iter()
+    .enumerate()
     {
         // |row| times p/s, and the same for d − p where |row| is rational.
         let offset = dot(&row, &corner);

@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::Camera;
-use super::camera::ANCHOR_LIMIT;
-use super::exact::{Ratio, dot, ratio, ratio3, sub};
+use super::camera::{ANCHOR_LIMIT, Camera};
+use crate::real::rational::{Ratio, dot, power_of_two, ratio, ratio3, sub, two_to};
 use crate::real::{Real, V3};
 
 /// A sphere that a primary ray can hit: the viewpoint is outside it.
@@ -58,7 +57,7 @@ impl<R: Real> Sphere<R> {
         if center.z - radius > viewpoint.z {
             return None;
         }
-        let unit = R::exact(super::exact::two_to(-prepared.scale));
+        let unit = R::exact(two_to(-prepared.scale));
         let c = (V3::exact(center) - V3::exact(viewpoint)) * unit;
         let r = R::exact(radius) * unit;
         let c2 = c.dot(c);
@@ -71,7 +70,7 @@ impl<R: Real> Sphere<R> {
             if exact <= Ratio::ZERO {
                 return None;
             }
-            power = R::ratio(&(exact / super::exact::power_of_two(2 * prepared.scale)));
+            power = R::ratio(&(exact / power_of_two(2 * prepared.scale)));
         } else if near < 0.0 {
             return None;
         }

@@ -1,13 +1,12 @@
 //! What an object's surface needs to know about a hit point, made ready: tile indices and vectors from a point.
 
-use dashu_ratio::Relaxed as Ratio;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::camera;
-use super::exact::{abs, is_zero, parity, power_of_two, ratio, ratio3};
-use super::plane::{Extent, rows};
+use super::extent::{Rectangle, rows};
+use crate::real::rational::{Ratio, abs, is_zero, parity, power_of_two, ratio, ratio3, two_to};
 use crate::real::{Real, V3};
-use crate::scene::{self, Object, Shape, TextureMode};
+use crate::scene::{self, Extent, Object, Shape, TextureMode};
 
 /// What modulates the ambient reflectivity of an object. Positions are from the viewpoint, in units of 2^scale.
 #[derive(Debug, Clone)]
@@ -39,7 +38,7 @@ pub struct Tiled<R> {
 #[derive(Debug, Clone)]
 pub struct Textured<R> {
     /// The rectangle.
-    pub extent: Extent<R>,
+    pub rectangle: Rectangle<R>,
     /// Texels a unit, along both sides.
     pub per_unit: [R; 2],
     /// Index of the texture.
@@ -92,96 +91,138 @@ pub(super) const PPLANE_TILE: f64 = 0.5;
 impl<R: Real> Surface<R> {
     /// Prepares the surface of `object`.
     pub fn new(scene: &scene::Scene, object: &Object) -> Self {
-        let view = scene.camera.viewpoint;
-        let scale = camera::exponent(view.z);
-        match (object.surface, &object.shape) {
+        match (&object.shape, object.surface) {
+            (Shape::Plane { .. } | Shape::Sphere { .. }, scene::Surface::Plain) => Self::Plain,
             (
+                &Shape::Plane { normal, point, .. },
                 scene::Surface::Tiled {
                     dimension,
                     altmaterial,
                     xdir,
                 },
-                Shape::Plane { normal, point, .. },
             ) => {
-                let plain = object.material;
+                let materials = [object.material, altmaterial];
+                let camera = &scene.camera;
                 Self::Tiled(Box::new(match xdir {
-                    None => {
-                        let index = |axis, d| {
-                            TileIndex::new(
-                                view[axis],
-                                own(*normal, *point, axis),
-                                TILE_SHIFT,
-                                d,
-                                scale,
-                            )
-                        };
-                        Tiled {
-                            rows: None,
-                            index: [index(0, dimension.x), index(2, dimension.y)],
-                            materials: [plain, altmaterial],
-                        }
-                    }
-                    // With xdir the course's program has the two materials the other way round.
-                    Some(xdir) => {
-                        let rows = rows(*normal, xdir);
-                        let index =
-                            |i: usize, d| TileIndex::along(rows[i].dot(V3::exact(view)), d, scale);
-                        Tiled {
-                            rows: Some(rows),
-                            index: [index(0, dimension.x), index(1, dimension.y)],
-                            materials: [altmaterial, plain],
-                        }
-                    }
+                    None => Tiled::along_axes(camera, normal, point, dimension, materials),
+                    Some(xdir) => Tiled::along_rows(camera, normal, xdir, dimension, materials),
                 }))
             }
+            (&Shape::Plane { normal, point, .. }, scene::Surface::Procedural { shader }) => {
+                Self::Pplane(Box::new(Pplane::new(&scene.camera, normal, point, shader)))
+            }
+            (Shape::Sphere { .. }, scene::Surface::Procedural { shader }) => Self::Psphere(shader),
             (
-                scene::Surface::Textured { texture, mode },
-                Shape::Plane {
+                &Shape::Plane {
                     normal,
                     point,
-                    extent: Some(extent),
+                    extent: Extent::Rectangle(ref rectangle),
                 },
+                scene::Surface::Textured { texture, mode },
             ) => {
-                let extent = Extent::new(&scene.camera, scale, *normal, *point, extent);
-                let texels = &scene.textures[texture].texels;
-                let size = [texels.width, texels.height];
-                let camera = &scene.camera;
-                let per_unit = [0, 1].map(|i| match mode {
-                    TextureMode::Fit => R::exact(f64::from(size[i])) / extent.dimensions[i],
-                    // A texel is as large as a pixel of the screen.
-                    TextureMode::Tile => R::ratio(
-                        &(power_of_two(scale) * ratio(f64::from(camera.pixeldim[i]))
-                            / ratio(camera.worlddim[i])),
-                    ),
-                });
-                Self::Textured(Box::new(Textured {
-                    extent,
-                    per_unit,
-                    texture,
-                    size,
-                    repeats: mode == TextureMode::Tile,
-                }))
+                let scale = camera::exponent(scene.camera.viewpoint.z);
+                let rectangle = Rectangle::new(&scene.camera, scale, normal, point, rectangle);
+                Self::Textured(Box::new(Textured::new(scene, rectangle, texture, mode)))
             }
-            (scene::Surface::Procedural { shader }, Shape::Plane { normal, point, .. }) => {
-                let index = |axis| {
-                    TileIndex::new(
-                        view[axis],
-                        own(*normal, *point, axis),
-                        PPLANE_SHIFT,
-                        PPLANE_TILE,
-                        scale,
-                    )
-                };
-                let from_point =
-                    |axis: usize| FromPoint::new(view[axis], *normal, *point, axis, scale);
-                Self::Pplane(Box::new(Pplane {
-                    shader,
-                    index: [index(0), index(1), index(2)],
-                    from_point: [from_point(0), from_point(1)],
-                }))
-            }
-            (scene::Surface::Procedural { shader }, Shape::Sphere { .. }) => Self::Psphere(shader),
-            _ => Self::Plain,
+            // The scene language has no such objects.
+            (
+                Shape::Plane {
+                    extent: Extent::Unbounded,
+                    ..
+                }
+                | Shape::Sphere { .. },
+                scene::Surface::Textured { .. },
+            )
+            | (Shape::Sphere { .. }, scene::Surface::Tiled { .. }) => Self::Plain,
+        }
+    }
+}
+
+impl<R: Real> Tiled<R> {
+    /// Tiles along world x and z; `materials` are the plane's own and the other.
+    fn along_axes(
+        camera: &scene::Camera,
+        normal: DVec3,
+        point: DVec3,
+        dimension: DVec2,
+        materials: [usize; 2],
+    ) -> Self {
+        let view = camera.viewpoint;
+        let scale = camera::exponent(view.z);
+        let index = |axis: usize, d: f64| {
+            let own = own(normal, point, axis);
+            TileIndex::new(view[axis], own, TILE_SHIFT, d, scale)
+        };
+        Self {
+            rows: None,
+            index: [index(0, dimension.x), index(2, dimension.y)],
+            materials,
+        }
+    }
+
+    /// Tiles along `xdir` and normal × xdir.
+    fn along_rows(
+        camera: &scene::Camera,
+        normal: DVec3,
+        xdir: DVec3,
+        dimension: DVec2,
+        [plain, other]: [usize; 2],
+    ) -> Self {
+        let view = camera.viewpoint;
+        let scale = camera::exponent(view.z);
+        let rows = rows(normal, xdir);
+        let index = |i: usize, d| TileIndex::along(rows[i].dot(V3::exact(view)), d, scale);
+        Self {
+            rows: Some(rows),
+            index: [index(0, dimension.x), index(1, dimension.y)],
+            // With xdir the course's program has the two materials the other way round.
+            materials: [other, plain],
+        }
+    }
+}
+
+impl<R: Real> Textured<R> {
+    fn new(
+        scene: &scene::Scene,
+        rectangle: Rectangle<R>,
+        texture: usize,
+        mode: TextureMode,
+    ) -> Self {
+        let camera = &scene.camera;
+        let texels = &scene.textures[texture].texels;
+        let size = [texels.width, texels.height];
+        let per_unit = [0, 1].map(|i| match mode {
+            TextureMode::Fit => R::exact(f64::from(size[i])) / rectangle.dimensions[i],
+            // A texel is as large as a pixel of the screen.
+            TextureMode::Tile => R::ratio(
+                &(power_of_two(camera::exponent(camera.viewpoint.z))
+                    * ratio(f64::from(camera.pixeldim[i]))
+                    / ratio(camera.worlddim[i])),
+            ),
+        });
+        Self {
+            rectangle,
+            per_unit,
+            texture,
+            size,
+            repeats: mode == TextureMode::Tile,
+        }
+    }
+}
+
+impl<R: Real> Pplane<R> {
+    fn new(camera: &scene::Camera, normal: DVec3, point: DVec3, shader: u32) -> Self {
+        let view = camera.viewpoint;
+        let scale = camera::exponent(view.z);
+        let index = |axis: usize| {
+            let own = own(normal, point, axis);
+            TileIndex::new(view[axis], own, PPLANE_SHIFT, PPLANE_TILE, scale)
+        };
+        let from_point = |axis: usize| FromPoint::new(view[axis], normal, point, axis, scale);
+        Self {
+            shader,
+            index: [index(0), index(1), index(2)],
+            from_point: [from_point(0), from_point(1)],
         }
     }
 }
@@ -222,7 +263,7 @@ impl<R: Real> TileIndex<R> {
         let whole = index.approx().floor();
         let whole = if whole.is_finite() { whole } else { 0.0 };
         Self {
-            per_unit: R::exact(super::exact::two_to(scale)) / d,
+            per_unit: R::exact(two_to(scale)) / d,
             fraction: index - R::exact(whole),
             parity: whole.rem_euclid(2.0) as u32,
         }

@@ -9,8 +9,11 @@ use std::collections::HashSet;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Camera, Sphere, View};
+use super::camera::Camera;
+use super::sphere::Sphere;
+use super::view::View;
 use crate::real::Real;
+use crate::real::rational::two_to;
 use crate::scene::{Scene, Shape};
 
 /// From so many objects on a ray does not ask every sphere. (Fewer stand in the text of the GPU's shader.)
@@ -203,7 +206,7 @@ impl Outlines {
     fn new<R: Real>(scene: &Scene, camera: &Camera<R>, view: View) -> Self {
         Self {
             viewpoint: scene.camera.viewpoint,
-            unit: super::exact::two_to(-camera.scale),
+            unit: two_to(-camera.scale),
             distance: camera.distance.approx(),
             step: camera.step.map(R::approx),
             offset: camera.offset.map(R::approx),

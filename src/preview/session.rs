@@ -97,11 +97,15 @@ pub(super) fn shows(scene: &Scene, object: usize, entity: EntityId) -> bool {
         EntityId::Object(i) => i == object,
         EntityId::Material(i) => {
             *material == i
-                || matches!(surface, Surface::Tiled { altmaterial, .. } if *altmaterial == i)
+                || match surface {
+                    Surface::Tiled { altmaterial, .. } => *altmaterial == i,
+                    Surface::Plain | Surface::Procedural { .. } | Surface::Textured { .. } => false,
+                }
         }
-        EntityId::Texture(i) => {
-            matches!(surface, Surface::Textured { texture, .. } if *texture == i)
-        }
+        EntityId::Texture(i) => match surface {
+            Surface::Textured { texture, .. } => *texture == i,
+            Surface::Plain | Surface::Procedural { .. } | Surface::Tiled { .. } => false,
+        },
         // They are not seen.
         EntityId::Camera | EntityId::Light(_) => false,
     }

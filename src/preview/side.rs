@@ -188,31 +188,37 @@ fn object(ui: &mut Ui, session: &Session, scene: &Scene, i: usize, wanted: &mut 
     let Some(object) = scene.objects.get(i) else {
         return;
     };
-    if let Shape::Sphere { .. } = object.shape {
-        let speed = scene.camera.worlddim.x / 200.0;
-        ui.horizontal(|ui| {
-            ui.label("center");
-            drags(
+    match object.shape {
+        Shape::Sphere { .. } => {
+            let speed = scene.camera.worlddim.x / 200.0;
+            ui.horizontal(|ui| {
+                ui.label("center");
+                drags(
+                    ui,
+                    session,
+                    Target::Sphere(i, Measure::Center),
+                    ["x", "y", "z"],
+                    speed,
+                    wanted,
+                );
+            });
+            sliders(
                 ui,
                 session,
-                Target::Sphere(i, Measure::Center),
-                ["x", "y", "z"],
-                speed,
+                Target::Sphere(i, Measure::Radius),
+                [""],
                 wanted,
             );
-        });
-        sliders(
-            ui,
-            session,
-            Target::Sphere(i, Measure::Radius),
-            [""],
-            wanted,
-        );
+        }
+        Shape::Plane { .. } => {}
     }
     let material = |index: usize| scene.materials.get(index).map_or("", |m| m.name.as_str());
     let mut text = format!("material {}", material(object.material));
-    if let Surface::Tiled { altmaterial, .. } = object.surface {
-        text.push_str(&format!(", altmaterial {}", material(altmaterial)));
+    match object.surface {
+        Surface::Tiled { altmaterial, .. } => {
+            text.push_str(&format!(", altmaterial {}", material(altmaterial)));
+        }
+        Surface::Plain | Surface::Procedural { .. } | Surface::Textured { .. } => {}
     }
     ui.label(text);
 }

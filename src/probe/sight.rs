@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use crate::cpu::camera::{Ray, camera_getdir, inverse_distance};
-use crate::cpu::debug::hit_point;
+use crate::cpu::hit_point::hit_point;
 use crate::cpu::plane::plane_hits;
 use crate::cpu::sphere::sphere_hits;
 use crate::cpu::trace::{Hit, Traced};

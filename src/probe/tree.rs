@@ -7,9 +7,9 @@ use std::io::{self, Write};
 use crate::cpu::light::Lit;
 use crate::cpu::surface::{Point, texel_place, tile_material};
 use crate::cpu::trace::{Branch, RayKind, Unmet, Watch};
-use crate::prepare::exact::two_to;
 use crate::prepare::{Prepared, Surface};
 use crate::real::V3;
+use crate::real::rational::two_to;
 use crate::scene::Scene;
 
 use super::digits::{components, count, short, short_triple};
@@ -179,11 +179,16 @@ impl<'a> Tree<'a> {
         let material = tile_material(self.prepared, point)
             .map_or("?", |index| &self.scene.materials[index].name);
         let mut text = format!("material {material}");
-        if let Surface::Textured(textured) = &self.prepared.surfaces[point.object]
-            && let Ok([column, row]) = texel_place(textured, point.position)
-        {
-            let texture = &self.scene.textures[textured.texture].name;
-            text += &format!(", texture {texture} at column {column}, row {row} from the bottom");
+        match &self.prepared.surfaces[point.object] {
+            Surface::Textured(textured) => {
+                if let Ok([column, row]) = texel_place(textured, point.position) {
+                    let texture = &self.scene.textures[textured.texture].name;
+                    text += &format!(
+                        ", texture {texture} at column {column}, row {row} from the bottom"
+                    );
+                }
+            }
+            Surface::Plain | Surface::Tiled(_) | Surface::Pplane(_) | Surface::Psphere(_) => {}
         }
         text
     }

@@ -7,8 +7,8 @@
 use std::fmt;
 
 use crate::prepare::camera::{origin, step};
-use crate::prepare::exact::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
-use crate::scene::{Camera, Extent, Scene, Shape};
+use crate::real::rational::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
+use crate::scene::{Camera, Extent, Rectangle, Scene, Shape};
 
 use super::digits;
 
@@ -105,7 +105,7 @@ impl ExactRay {
                 extent,
             } => {
                 let (normal, point) = (ratio3(normal), ratio3(point));
-                self.plane(&normal, &point, extent.as_ref(), screen_tolerance)
+                self.plane(&normal, &point, &extent, screen_tolerance)
             }
             Shape::Sphere { center, radius } => self.sphere(&ratio3(center), &ratio(radius)),
         }
@@ -115,7 +115,7 @@ impl ExactRay {
         &self,
         normal: &[Ratio; 3],
         point: &[Ratio; 3],
-        extent: Option<&Extent>,
+        extent: &Extent,
         screen_tolerance: f64,
     ) -> Verdict {
         let along = dot(normal, &self.w);
@@ -134,7 +134,10 @@ impl ExactRay {
         if hit[2] > ratio(screen_tolerance) {
             return Verdict::Miss(Reason::BeforeScreen(hit[2].to_f64().value()));
         }
-        let outside = extent.and_then(|extent| outside(extent, normal, &sub(&hit, point)));
+        let outside = match extent {
+            Extent::Unbounded => None,
+            Extent::Rectangle(rectangle) => outside(rectangle, normal, &sub(&hit, point)),
+        };
         outside.map_or(Verdict::Hit, Verdict::Miss)
     }
 
@@ -161,15 +164,15 @@ impl ExactRay {
 }
 
 /// Over which side of a rectangle a point of its plane lies, if over any; `v` leads there from its corner.
-fn outside(extent: &Extent, normal: &[Ratio; 3], v: &[Ratio; 3]) -> Option<Reason> {
+fn outside(rectangle: &Rectangle, normal: &[Ratio; 3], v: &[Ratio; 3]) -> Option<Reason> {
     // Along the sides, not of unit length: (N·N)·xdir − (N·xdir)·N, and N × that.
-    let xdir = ratio3(extent.xdir);
+    let xdir = ratio3(rectangle.xdir);
     let (nn, nx) = (dot(normal, normal), dot(normal, &xdir));
     let first = [0, 1, 2].map(|i| &xdir[i] * &nn - &normal[i] * &nx);
     let second =
         [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &normal[i] * &first[j] - &normal[j] * &first[i]);
     for (side, along) in [first, second].iter().enumerate() {
-        let length = extent.dimensions[side];
+        let length = rectangle.dimensions[side];
         let (p, size2) = (dot(along, v), dot(along, along));
         let before = !is_positive(&p) && !is_zero(&p);
         if before || &p * &p > ratio(length) * ratio(length) * &size2 {

@@ -9,9 +9,8 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use dashu_ratio::Relaxed as Ratio;
-
 use super::float::whole_below;
+use super::rational::{Ratio, ratio};
 use super::{Real, Undecided, lazy};
 
 /// A number within `error` of `value`.
@@ -179,7 +178,7 @@ impl Real for Bounded {
 
     fn ratio(value: &Ratio) -> Self {
         let near = f64::ratio(value);
-        let exact = near.is_finite() && crate::prepare::exact::ratio(near) == *value;
+        let exact = near.is_finite() && ratio(near) == *value;
         Self {
             value: near,
             error: if exact { 0.0 } else { U * near.abs() + TINY },

@@ -1,9 +1,8 @@
-//! f64 as a [`Real`]: what people read, and what the GPU's tables are rounded from.
+//! f64 as a [`Real`]: what people read, and what a pixel is presumed to be that no other number type decides.
 
 use std::cmp::Ordering;
 
-use dashu_ratio::Relaxed as Ratio;
-
+use super::rational::Ratio;
 use super::{Real, Undecided};
 
 impl Real for f64 {

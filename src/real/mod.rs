@@ -1,13 +1,16 @@
 //! The number types that the tracer runs on.
 //!
 //! `cpu` is written once, over [`Real`]. A number type says what it knows: a comparison that it cannot decide is
-//! [`Undecided`], never a guess. [`Bounded`] is f64 that knows its error, and decides nearly every pixel; [`Lazy`] decides
-//! the others, in the end exactly. Plain f64 decides always, and is wrong where its rounding crosses the border: it is
-//! for people to read, and for the GPU's tables.
+//! [`Undecided`], never a guess. [`Bounded`] is f64 that knows its error, and decides nearly every pixel; [`Lazy`]
+//! decides the others, in the end exactly. Plain f64 decides always, and is wrong where its rounding crosses the
+//! border: it is for people to read, and for what nothing else decides.
+//!
+//! [`rational`] stands below them all: the arithmetic that `prepare` takes a scene's facts from.
 
 mod bounded;
 mod float;
 mod lazy;
+pub mod rational;
 mod vec3;
 
 pub use bounded::Bounded;
@@ -18,7 +21,7 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use dashu_ratio::Relaxed as Ratio;
+use rational::Ratio;
 
 /// What a comparison answers that the number type is too coarse for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,8 +13,9 @@ use glam::{DVec2, DVec3};
 
 use super::check;
 use super::draft::{Assembly, Draft, Picture};
+use super::kind::{Class, Kind};
 use super::model::{Material, Scene, Texels, TextureMode};
-use super::table::{self, Class, Kind};
+use super::table;
 use super::texture::Pictures;
 
 /// A material of a [`SceneBuilder`]; of no use with another.

@@ -4,9 +4,10 @@
 use std::ops::Range;
 
 use super::draft::Draft;
+use super::kind::Kind;
 use super::lex::{self, Kind as Lexeme};
 use super::parse::{Block, Parser};
-use super::table::{self, Attribute, Entity, Kind, Take};
+use super::table::{self, Attribute, Entity, Take};
 use crate::diagnostic::Diagnostic;
 
 impl Parser<'_> {

@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::kind::{Class, Kind};
 use super::model::{
-    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
-    TextureMode,
+    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Texture, TextureMode,
 };
-use super::table::{Class, Kind};
 
 /// The fields of all entities; an entity uses those that its rows name.
 #[derive(Debug, Clone, Default)]
@@ -177,23 +177,23 @@ impl Draft {
             point: self.point.into(),
             extent,
         };
-        let extent = Extent {
+        let rectangle = Extent::Rectangle(Rectangle {
             xdir: self.xdir.unwrap_or_default().into(),
             dimensions: self.dimension.into(),
-        };
+        });
         let procedural = Surface::Procedural {
             shader: self.shader[0] as u32,
         };
         match class {
-            Class::Plane => (plane(None), Surface::Plain),
-            Class::ProceduralPlane => (plane(None), procedural),
-            Class::Finite => (plane(Some(extent)), Surface::Plain),
+            Class::Plane => (plane(Extent::Unbounded), Surface::Plain),
+            Class::ProceduralPlane => (plane(Extent::Unbounded), procedural),
+            Class::Finite => (plane(rectangle), Surface::Plain),
             Class::Sphere => (sphere, Surface::Plain),
             Class::ProceduralSphere => (sphere, procedural),
             Class::Tiled => {
                 let (dimension, xdir) = (DVec2::from(self.dimension), self.xdir.map(DVec3::from));
                 (
-                    plane(None),
+                    plane(Extent::Unbounded),
                     Surface::Tiled {
                         dimension,
                         altmaterial: self.altmaterial,
@@ -208,7 +208,7 @@ impl Draft {
                     TextureMode::Tile
                 };
                 (
-                    plane(Some(extent)),
+                    plane(rectangle),
                     Surface::Textured {
                         texture: self.texture,
                         mode,
@@ -273,12 +273,7 @@ impl Draft {
             draft.point = cone.point.to_array();
             draft.theta = [cone.theta];
         }
-        (
-            Kind::Light {
-                spot: light.cone.is_some(),
-            },
-            draft,
-        )
+        (light.kind(), draft)
     }
 
     /// An object, to list or to check, and its class.
@@ -288,10 +283,9 @@ impl Draft {
             material: object.material,
             ..Self::default()
         };
-        let (mut class, procedural) = match object.shape {
+        match object.shape {
             Shape::Sphere { center, radius } => {
                 (draft.center, draft.radius) = (center.to_array(), [radius]);
-                (Class::Sphere, Class::ProceduralSphere)
             }
             Shape::Plane {
                 normal,
@@ -299,26 +293,18 @@ impl Draft {
                 extent,
             } => {
                 (draft.normal, draft.point) = (normal.to_array(), point.to_array());
-                if let Some(extent) = extent {
-                    draft.xdir = Some(extent.xdir.to_array());
-                    draft.dimension = extent.dimensions.to_array();
+                match extent {
+                    Extent::Unbounded => {}
+                    Extent::Rectangle(rectangle) => {
+                        draft.xdir = Some(rectangle.xdir.to_array());
+                        draft.dimension = rectangle.dimensions.to_array();
+                    }
                 }
-                (
-                    if extent.is_some() {
-                        Class::Finite
-                    } else {
-                        Class::Plane
-                    },
-                    Class::ProceduralPlane,
-                )
             }
-        };
+        }
         match object.surface {
             Surface::Plain => {}
-            Surface::Procedural { shader } => {
-                draft.shader = [f64::from(shader)];
-                class = procedural;
-            }
+            Surface::Procedural { shader } => draft.shader = [f64::from(shader)],
             Surface::Tiled {
                 dimension,
                 altmaterial,
@@ -326,14 +312,12 @@ impl Draft {
             } => {
                 (draft.dimension, draft.altmaterial) = (dimension.to_array(), altmaterial);
                 draft.xdir = xdir.map(|xdir| xdir.to_array());
-                class = Class::Tiled;
             }
             Surface::Textured { texture, mode } => {
                 draft.texture = texture;
                 draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
-                class = Class::Textured;
             }
         }
-        (Kind::Object(class), draft)
+        (Kind::Object(object.class()), draft)
     }
 }

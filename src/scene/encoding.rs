@@ -3,10 +3,8 @@
 //! A picture, an archive or UTF-16 text in place of a scene is one mistake and gets one message. Bytes that are not
 //! UTF-8 inside what else is a scene are one more mistake among others.
 
+use super::bytes::is_space;
 use crate::diagnostic::Diagnostic;
-
-/// UTF-8's byte order mark.
-pub(super) const UTF8_BOM: &[u8] = b"\xEF\xBB\xBF";
 
 /// How files begin that people hand over by mistake, and what to call them.
 const SIGNATURES: &[(&[u8], &str)] = &[
@@ -32,7 +30,7 @@ const MARKS: &[(&[u8], &str)] = &[
 /// What a file that begins like this is, where it is known and no scene.
 pub(super) fn signature(bytes: &[u8]) -> Option<&'static str> {
     if let [b'P', digit @ b'1'..=b'6', space, ..] = bytes
-        && (super::lex::is_space(*space) || *space == b'#')
+        && (is_space(*space) || *space == b'#')
     {
         return Some(if matches!(digit, b'3' | b'6') {
             "a PPM picture"

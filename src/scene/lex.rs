@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use super::bytes::{is_space, mark_length};
+
 /// What a token is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -55,11 +57,6 @@ impl Token<'_> {
     }
 }
 
-/// White space of the scene language: that of C's `isspace`.
-pub(super) fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | 0x0B | 0x0C)
-}
-
 /// Does this byte end a word?
 fn ends_word(byte: u8) -> bool {
     is_space(byte) || matches!(byte, b'{' | b'}' | b'#')
@@ -77,11 +74,7 @@ impl<'t> Lexer<'t> {
     pub(super) fn new(text: &'t [u8]) -> Self {
         Self {
             text,
-            at: if text.starts_with(super::encoding::UTF8_BOM) {
-                super::encoding::UTF8_BOM.len()
-            } else {
-                0
-            },
+            at: mark_length(text),
         }
     }
 

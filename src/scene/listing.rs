@@ -8,8 +8,9 @@
 use std::io;
 
 use super::draft::Draft;
+use super::kind::Kind;
 use super::model::Scene;
-use super::table::{self, Attribute, Kind, Take};
+use super::table::{self, Attribute, Take};
 
 /// Writes the model listing of a scene.
 ///

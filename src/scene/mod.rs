@@ -8,10 +8,12 @@
 //! Beside it, `places` tells where in the text what is in the scene stands.
 
 mod build;
+mod bytes;
 mod check;
 mod draft;
 mod encoding;
 mod errors;
+mod kind;
 mod lex;
 mod limit;
 mod listing;
@@ -19,6 +21,7 @@ mod load;
 pub mod model;
 mod names;
 mod number;
+mod numbers;
 mod parse;
 mod places;
 mod recover;
@@ -40,8 +43,8 @@ pub use listing::list_model;
 pub(crate) use load::read_file;
 pub use load::{LoadError, MAX_FILE, is_same_file, load, load_from};
 pub use model::{
-    Camera, Cone, Extent, Light, Material, Object, Scene, Shape, Surface, Texels, Texture,
-    TextureMode,
+    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Texture, TextureMode,
 };
 pub use parse::parse;
 pub use places::{EntityId, Given, Place, Places, line, places};

@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::kind::{Class, Kind};
+
 /// A whole scene: one camera, and lists in the order of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -76,8 +78,8 @@ pub enum Shape {
         normal: DVec3,
         /// A point on the plane; of a rectangle, its corner.
         point: DVec3,
-        /// The rectangle of an `fplane` or `texplane`; without it the plane has no end.
-        extent: Option<Extent>,
+        /// Where the plane ends.
+        extent: Extent,
     },
     /// A sphere.
     Sphere {
@@ -88,9 +90,18 @@ pub enum Shape {
     },
 }
 
+/// Where a plane ends: straight sides all around, or nowhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Extent {
+    /// It has no end.
+    Unbounded,
+    /// It is a rectangle (`fplane`, `texplane`).
+    Rectangle(Rectangle),
+}
+
 /// The rectangle of a finite plane, from `point` along xdir (projected onto the plane) and normal × xdir.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
+pub struct Rectangle {
     /// The direction of the first side; not parallel to the normal.
     pub xdir: DVec3,
     /// Lengths of the sides, > 0.
@@ -183,19 +194,25 @@ pub struct Texels {
 impl Object {
     /// The entity type that the scene file calls this object by.
     pub fn entity(&self) -> &'static str {
+        Kind::Object(self.class()).name()
+    }
+
+    /// The class of the entity that the scene file has for this shape and surface.
+    pub(super) fn class(&self) -> Class {
         match (&self.shape, &self.surface) {
-            (Shape::Sphere { .. }, Surface::Procedural { .. }) => "psphere",
-            (Shape::Sphere { .. }, _) => "sphere",
-            (Shape::Plane { .. }, Surface::Tiled { .. }) => "tiled_plane",
-            (Shape::Plane { .. }, Surface::Procedural { .. }) => "pplane",
-            (Shape::Plane { .. }, Surface::Textured { .. }) => "texplane",
+            (Shape::Sphere { .. }, Surface::Procedural { .. }) => Class::ProceduralSphere,
+            // Spheres have no tiles and no pictures.
             (
-                Shape::Plane {
-                    extent: Some(_), ..
-                },
-                Surface::Plain,
-            ) => "fplane",
-            (Shape::Plane { .. }, Surface::Plain) => "plane",
+                Shape::Sphere { .. },
+                Surface::Plain | Surface::Tiled { .. } | Surface::Textured { .. },
+            ) => Class::Sphere,
+            (Shape::Plane { .. }, Surface::Tiled { .. }) => Class::Tiled,
+            (Shape::Plane { .. }, Surface::Procedural { .. }) => Class::ProceduralPlane,
+            (Shape::Plane { .. }, Surface::Textured { .. }) => Class::Textured,
+            (Shape::Plane { extent, .. }, Surface::Plain) => match extent {
+                Extent::Unbounded => Class::Plane,
+                Extent::Rectangle(_) => Class::Finite,
+            },
         }
     }
 }
@@ -203,10 +220,13 @@ impl Object {
 impl Light {
     /// The entity type that the scene file calls this light by.
     pub fn entity(&self) -> &'static str {
-        if self.cone.is_some() {
-            "spotlight"
-        } else {
-            "light"
+        self.kind().name()
+    }
+
+    /// The kind of entity that it is.
+    pub(super) fn kind(&self) -> Kind {
+        Kind::Light {
+            spot: self.cone.is_some(),
         }
     }
 }

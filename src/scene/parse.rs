@@ -11,11 +11,12 @@ use std::path::Path;
 use super::draft::{Assembly, Draft};
 use super::encoding;
 use super::errors::Errors;
+use super::kind::Kind;
 use super::lex::{Kind as Lexeme, Lexer, Token};
 use super::model::Scene;
 use super::names::Names;
 use super::number::looks_numeric;
-use super::table::{self, Entity, Kind, MAX_ROWS};
+use super::table::{self, Entity, MAX_ROWS};
 use super::texture::Pictures;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
@@ -319,7 +320,7 @@ impl<'t> Parser<'t> {
         let end = self
             .text
             .iter()
-            .rposition(|byte| !super::lex::is_space(*byte))
+            .rposition(|byte| !super::bytes::is_space(*byte))
             .map_or(0, |last| last + 1);
         let empty = self.last_end == 0;
         let message = if empty {

@@ -7,9 +7,11 @@
 
 use std::ops::Range;
 
+use super::bytes::mark_length;
+use super::kind::Kind;
 use super::lex::{Kind as Lexeme, Lexer, Token};
 use super::number::{looks_numeric, parse_number};
-use super::table::{self, Entity, Kind, Take};
+use super::table::{self, Entity, Take};
 
 /// One entity of a [`Scene`](super::Scene), by the list it is in and its number there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -198,12 +200,7 @@ pub fn line(text: &[u8], offset: usize) -> (usize, usize) {
             *byte == b'\n' || (*byte == b'\r' && text.get(at + 1) != Some(&b'\n'))
         })
         .map_or(0, |end| end + 1);
-    let mark = start == 0 && text.starts_with(super::encoding::UTF8_BOM);
-    let skipped = if mark {
-        super::encoding::UTF8_BOM.len()
-    } else {
-        0
-    };
+    let skipped = if start == 0 { mark_length(text) } else { 0 };
     let column = before[start..]
         .iter()
         .skip(skipped)

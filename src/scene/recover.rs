@@ -1,11 +1,12 @@
 //! What the parser (text → lex → parse → [`Scene`](super::Scene)) does where an entity is not understood: says so
 //! once, and skips to where one may begin.
 
+use super::kind::Kind;
 use super::lex::{Kind as Lexeme, Token};
 use super::names::nearest;
 use super::parse::Parser;
 use super::slips;
-use super::table::{self, ENTITIES, Entity, Kind, UNSUPPORTED};
+use super::table::{self, ENTITIES, Entity, UNSUPPORTED};
 use crate::diagnostic::Diagnostic;
 
 impl<'t> Parser<'t> {

@@ -18,10 +18,13 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
         found.push("there are no objects: the picture is black".to_owned());
     }
     if scene.lights.is_empty() {
-        // Procedural colours need no material's ambient.
         let dark = |object: &&Object| {
             scene.materials[object.material].ambient == DVec3::ZERO
-                && !matches!(object.surface, Surface::Procedural { .. })
+                && match object.surface {
+                    Surface::Plain | Surface::Tiled { .. } | Surface::Textured { .. } => true,
+                    // Its colours need no material's ambient.
+                    Surface::Procedural { .. } => false,
+                }
         };
         let mut names: Vec<&str> = Vec::new();
         for object in scene.objects.iter().filter(dark) {

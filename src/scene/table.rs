@@ -4,6 +4,7 @@
 //! nowhere else. In the flow text → lex → parse → [`Scene`](super::Scene) this is what `parse` looks words up in.
 
 use super::draft::Draft;
+use super::kind::{Class, Kind};
 use super::limit::Limit;
 use super::number;
 
@@ -11,42 +12,6 @@ pub use super::limit::MAX_PIXELDIM;
 
 // The tables of shaders are made from the folder of shaders, in one place.
 pub use crate::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
-/// The entity types.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// The viewpoint and the screen.
-    Camera,
-    /// How a surface answers light.
-    Material,
-    /// A picture to lay on a `texplane`.
-    Texture,
-    /// A visible object.
-    Object(Class),
-    /// A light, with or without a cone.
-    Light {
-        /// Is it a spotlight?
-        spot: bool,
-    },
-}
-
-/// The classes of visible objects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Class {
-    /// `plane`
-    Plane,
-    /// `tiled_plane`
-    Tiled,
-    /// `pplane`
-    ProceduralPlane,
-    /// `fplane`
-    Finite,
-    /// `texplane`
-    Textured,
-    /// `sphere`
-    Sphere,
-    /// `psphere`
-    ProceduralSphere,
-}
 
 /// One row: an attribute of an entity.
 pub(super) struct Attribute {
@@ -334,13 +299,12 @@ const AIMLESS: Option<Relation> = Some(Relation {
 });
 
 const fn entity(
-    name: &'static str,
     kind: Kind,
     levels: &'static [&'static [Attribute]],
     relation: Option<Relation>,
 ) -> Entity {
     Entity {
-        name,
+        name: kind.name(),
         kind,
         levels,
         relation,
@@ -348,59 +312,35 @@ const fn entity(
 }
 
 const fn object(
-    name: &'static str,
     class: Class,
     levels: &'static [&'static [Attribute]],
     relation: Option<Relation>,
 ) -> Entity {
-    Entity {
-        name,
-        kind: Kind::Object(class),
-        levels,
-        relation,
-    }
+    entity(Kind::Object(class), levels, relation)
 }
 
 /// All entity types.
 pub(super) static ENTITIES: [Entity; 12] = [
-    entity("camera", Kind::Camera, &[CAMERA], None),
-    entity("material", Kind::Material, &[MATERIAL], None),
-    object("plane", Class::Plane, &[OBJECT, PLANE], None),
-    object("sphere", Class::Sphere, &[OBJECT, SPHERE], None),
+    entity(Kind::Camera, &[CAMERA], None),
+    entity(Kind::Material, &[MATERIAL], None),
+    object(Class::Plane, &[OBJECT, PLANE], None),
+    object(Class::Sphere, &[OBJECT, SPHERE], None),
+    object(Class::Tiled, &[OBJECT, PLANE, TILED], ALONG_NORMAL),
     object(
-        "tiled_plane",
-        Class::Tiled,
-        &[OBJECT, PLANE, TILED],
-        ALONG_NORMAL,
-    ),
-    object(
-        "pplane",
         Class::ProceduralPlane,
         &[OBJECT, PLANE, PROCEDURAL_PLANE],
         None,
     ),
     object(
-        "psphere",
         Class::ProceduralSphere,
         &[OBJECT, SPHERE, PROCEDURAL_SPHERE],
         None,
     ),
+    object(Class::Finite, &[OBJECT, PLANE, FINITE], ALONG_NORMAL),
+    entity(Kind::Light { spot: false }, &[LIGHT], None),
+    entity(Kind::Light { spot: true }, &[LIGHT, SPOT], AIMLESS),
+    entity(Kind::Texture, &[TEXTURE], None),
     object(
-        "fplane",
-        Class::Finite,
-        &[OBJECT, PLANE, FINITE],
-        ALONG_NORMAL,
-    ),
-    entity("light", Kind::Light { spot: false }, &[LIGHT], None),
-    entity(
-        "spotlight",
-        Kind::Light { spot: true },
-        &[LIGHT, SPOT],
-        AIMLESS,
-    ),
-    entity("texture", Kind::Texture, &[TEXTURE], None),
-    object(
-        "texplane",
         Class::Textured,
         &[OBJECT, PLANE, FINITE, TEXTURED],
         ALONG_NORMAL,
@@ -456,58 +396,4 @@ impl Attribute {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_kind_has_its_own_entity() {
-        for entity in &ENTITIES {
-            assert!(std::ptr::eq(of(entity.kind), entity), "{}", entity.name);
-            assert!(std::ptr::eq(find(entity.name.as_bytes()).unwrap(), entity));
-            assert!(!UNSUPPORTED.contains(&entity.name));
-        }
-    }
-
-    #[test]
-    fn examples_are_right() {
-        for row in ENTITIES.iter().flat_map(Entity::rows) {
-            let words: Vec<_> = row.example.split(' ').collect();
-            let (count, numbers) = match row.take {
-                _ if !row.required => continue,
-                Take::Numbers(count, _) | Take::Integers(count, _) => (count, true),
-                Take::Spread(_) => (3, true),
-                Take::Material(_) | Take::Texture(_) | Take::Picture => (1, false),
-            };
-            assert_eq!(words.len(), count, "{}", row.name);
-            if numbers {
-                let values: Vec<_> = words.iter().map(|word| word.parse().unwrap()).collect();
-                assert!(row.limit.broken(&values).is_empty(), "{}", row.name);
-            }
-        }
-    }
-
-    #[test]
-    fn rows_fit_and_are_as_long_as_they_say() {
-        for entity in &ENTITIES {
-            assert!(entity.rows().count() <= MAX_ROWS, "{}", entity.name);
-            for row in entity.rows() {
-                if let Take::Numbers(count, field) | Take::Integers(count, field) = row.take {
-                    assert_eq!(
-                        field(&mut Draft::default()).len(),
-                        count,
-                        "{} {}",
-                        entity.name,
-                        row.name
-                    );
-                }
-                assert_eq!(
-                    entity
-                        .rows()
-                        .filter(|other| other.is_called(row.name.as_bytes()))
-                        .count(),
-                    1
-                );
-            }
-        }
-    }
-}
+mod tests;

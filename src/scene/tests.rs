@@ -91,7 +91,7 @@ fn attributes_come_in_any_order_and_names_repeat() {
         Shape::Plane {
             normal,
             point: DVec3::ZERO,
-            extent: None
+            extent: Extent::Unbounded
         }
     );
     assert_eq!(scene.lights[0].location, DVec3::new(4.0, 5.0, 6.0));

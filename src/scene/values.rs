@@ -2,23 +2,14 @@
 //!
 //! The inner half of the parser, text → lex → parse → [`Scene`](super::Scene).
 
-use std::ops::Range;
-
 use super::draft::Picture;
-use super::lex::{Kind as Lexeme, Token};
+use super::lex::Token;
 use super::names::nearest;
-use super::number::{self, NumberError, looks_numeric};
+use super::number::looks_numeric;
 use super::parse::{Block, Parser};
 use super::slips;
 use super::table::{Attribute, ENTITIES, Entity, Take};
 use crate::diagnostic::Diagnostic;
-
-/// Numbers as they are read: their values, their tokens, and whether all was well.
-struct Numbers<'t> {
-    values: [f64; 3],
-    tokens: Vec<Token<'t>>,
-    good: bool,
-}
 
 impl<'t> Parser<'t> {
     /// Reads an attribute and its values.
@@ -162,7 +153,7 @@ impl<'t> Parser<'t> {
 
     /// Does the next token, a word, look like the next attribute, or the next entity? It does when it resembles one, or
     /// starts a line and is followed by a number.
-    fn may_be_attribute(&self, entity: &'static Entity) -> bool {
+    pub(super) fn may_be_attribute(&self, entity: &'static Entity) -> bool {
         let [first, second, _] = &self.window;
         meant_row(entity, first.text).is_some()
             || self.starts_entity(Some(entity))
@@ -282,120 +273,6 @@ impl<'t> Parser<'t> {
         }
         Some(first)
     }
-
-    /// Reads numbers, checks how many and whether they keep the row's limit, and puts them where they go.
-    fn numbers(
-        &mut self,
-        block: &mut Block,
-        row: &'static Attribute,
-        key: Token<'t>,
-        counts: Range<usize>,
-        whole: bool,
-        field: super::table::Field,
-    ) -> bool {
-        let mut numbers = Numbers {
-            values: [0.0; 3],
-            tokens: Vec::with_capacity(3),
-            good: true,
-        };
-        let max = counts.end - 1;
-        let mut extra = 0;
-        let mut extra_start = 0;
-        let mut spaced = false;
-        while self.window[0].kind == Lexeme::Word {
-            let token = self.window[0];
-            let count = numbers.tokens.len();
-            // A word that is no number is a wrong value while values lack, unless it may be the next attribute.
-            if !looks_numeric(token.text)
-                && (count >= counts.start || self.may_be_attribute(block.entity))
-            {
-                break;
-            }
-            self.bump();
-            if let Some(error) = slips::strange_space_error(token) {
-                self.errors.report(error);
-                give_rows_in(block, token);
-                spaced = true;
-                continue;
-            }
-            if count == max {
-                extra_start = if extra == 0 { token.start } else { extra_start };
-                extra += 1;
-                continue;
-            }
-            numbers.tokens.push(token);
-            match read(token, whole) {
-                Ok(value) => numbers.values[count] = value,
-                Err(error) => {
-                    self.errors.report(*error);
-                    numbers.good = false;
-                }
-            }
-        }
-        // How many were meant is not known where one token held more than one.
-        if spaced {
-            return false;
-        }
-        let found = numbers.tokens.len() + extra;
-        // A row of one or three numbers does not take two.
-        if found != max && found != counts.start {
-            let mut takes = if max == 1 {
-                String::from("1 number")
-            } else {
-                format!("{max} numbers")
-            };
-            if counts.start < max {
-                takes = String::from("1 or 3 numbers");
-            }
-            let span = if extra > 0 {
-                extra_start..self.last_end
-            } else {
-                key.start..self.last_end
-            };
-            let label = if extra > 0 { "too many" } else { "too few" };
-            let error =
-                Diagnostic::new(span, format!("`{}` takes {takes}, found {found}", row.name));
-            let error = error.label(label);
-            self.errors.report(match (&numbers.tokens[..], extra) {
-                ([one], 0) if row.is_colour() && numbers.good => {
-                    let one = String::from_utf8_lossy(one.text);
-                    error.help(format!("a colour is red, green, blue: `{one} {one} {one}`"))
-                }
-                (_, 0) if row.is_colour() => error.help("a colour is red, green, blue"),
-                _ => error,
-            });
-            return false;
-        }
-        if !numbers.good {
-            return false;
-        }
-        if found < max {
-            numbers.values = [numbers.values[0]; 3];
-        }
-        let kept = self.check_limit(row, &numbers, max);
-        field(&mut block.draft).copy_from_slice(&numbers.values[..max]);
-        kept
-    }
-
-    fn check_limit(&mut self, row: &Attribute, numbers: &Numbers<'t>, max: usize) -> bool {
-        let tokens = &numbers.tokens;
-        let mut broken = row.limit.broken(&numbers.values[..max]);
-        // One value that stands for three is wrong once.
-        broken.retain(|index| *index < tokens.len());
-        let (Some(first), Some(last)) = (broken.first(), broken.last()) else {
-            return true;
-        };
-        let message = format!("`{}` must be {}", row.name, row.limit.wording());
-        let together = broken.len() == last - first + 1;
-        let error = if together {
-            Diagnostic::new(tokens[*first].start..tokens[*last].end(), message)
-        } else {
-            Diagnostic::new(tokens[*first].span(), message)
-                .also(tokens[*last].span(), "and this one")
-        };
-        self.errors.report(error);
-        false
-    }
 }
 
 /// The row that a misspelt attribute means.
@@ -404,7 +281,7 @@ fn meant_row(entity: &'static Entity, word: &[u8]) -> Option<(usize, &'static At
 }
 
 /// Notes the attributes that were meant in a token with spaces that are not ASCII's: they are not missing.
-fn give_rows_in(block: &mut Block, token: Token<'_>) {
+pub(super) fn give_rows_in(block: &mut Block, token: Token<'_>) {
     for word in slips::words_of(token) {
         if let Some((index, _)) = block.entity.row(word.text) {
             block.given[index].get_or_insert(word.span());
@@ -435,30 +312,4 @@ fn colours_of(entity: &Entity, word: &[u8]) -> Option<String> {
 fn attributes_of(entity: &Entity) -> String {
     let names: Vec<_> = entity.rows().map(|row| format!("`{}`", row.name)).collect();
     format!("`{}` has {}", entity.name, names.join(", "))
-}
-
-/// Reads one number.
-fn read(token: Token<'_>, whole: bool) -> Result<f64, Box<Diagnostic>> {
-    let value = if whole {
-        number::parse_integer(token.text).map(|value| value as f64)
-    } else {
-        number::parse_number(token.text)
-    };
-    if let Ok(value) = value {
-        return Ok(value);
-    }
-    let word = token.quoted();
-    let error = match number::parse_number(token.text) {
-        Err(NumberError::NotFinite) => format!("{word} is not a finite number"),
-        _ if whole => format!("{word} is not a whole number"),
-        Err(NumberError::TooLarge) => {
-            format!("{word} is too large a number: the largest is about 1.8e308")
-        }
-        _ => format!("{word} is not a number"),
-    };
-    let error = Diagnostic::new(token.span(), error);
-    Err(Box::new(match slips::number_help(token.text, whole) {
-        Some(help) => error.help(help),
-        None => error,
-    }))
 }

@@ -1,9 +1,9 @@
 //! Error bounds for f32 on the GPU: the model of its arithmetic, the constants named in `shaders/`, and the literal bounds
 //! that the host derives for forms over the pixel. Each constant is derived in docs/NUMERICS.md under its name.
 
-use crate::prepare::exact::ratio;
 use crate::prepare::plane::Step;
 use crate::real::Bounded;
+use crate::real::rational::ratio;
 
 macro_rules! named {
     ($($(#[doc = $doc:literal])+ $name:ident = $value:expr;)+) => {

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use super::feature::{Feature, Features};
 use super::kind::SurfaceKind;
 use super::pack::Packed;
-use crate::prepare::exact::two_to;
 use crate::procedural::{self, Family, Shader};
+use crate::real::rational::two_to;
 use crate::settings::{Precision, Settings, Spread};
 
 /// Which parts of the shader a scene needs.

@@ -6,8 +6,9 @@ records! {
     /// An object of a scene without lights.
     Object as "Object" {
         /// Ambient reflectivity of the material.
+        #[any_size = "the darkness that follows from it is checked in its place"]
         ambient: [f32; 3],
-        /// [`Kind`](super::Kind) in the low byte, the index of its record above.
+        /// Its kind of surface, `KIND_…`, in the low byte, the index of its record above.
         kind: u32,
     }
 
@@ -135,6 +136,7 @@ records! {
         /// The same for the second direction.
         fraction_1: f32,
         /// Ambient reflectivity of the other material.
+        #[any_size = "the darkness that follows from it is checked in its place"]
         altmaterial: [f32; 3],
         /// Index of the other material.
         altindex: u32,

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use plumb::gpu::device::Gpu;
 use plumb::prepare;
 use plumb::render::{Settings, Spread};
-use plumb::scene::{Camera, Extent, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Rectangle, Scene, Shape, Surface};
 
 use crate::support::{Rng, Seen, run};
 use crate::world::{World, materials, object};
@@ -18,10 +18,14 @@ fn scene(rng: &mut Rng, camera: Camera) -> Scene {
         let far = rng.log(-1.0, 2.0);
         let mut point = DVec3::new(0.5, 0.5, 0.0) * camera.worlddim.extend(0.0) + rng.within(far);
         point.z = point.z.min(-0.1 * far);
-        let extent = (i % 2 == 0).then(|| Extent {
-            xdir: normal.cross(rng.unit()),
-            dimensions: DVec2::splat(far) * rng.uniform(0.2, 2.0),
-        });
+        let extent = if i % 2 == 0 {
+            Extent::Rectangle(Rectangle {
+                xdir: normal.cross(rng.unit()),
+                dimensions: DVec2::splat(far) * rng.uniform(0.2, 2.0),
+            })
+        } else {
+            Extent::Unbounded
+        };
         let surface = Surface::Procedural { shader: 0 };
         let shape = Shape::Plane {
             normal,
@@ -57,6 +61,25 @@ pub(crate) struct Picture {
     samples: u32,
     spread: Spread,
     unit: f64,
+}
+
+/// Unit vectors along the sides of a rectangle.
+fn sides(rectangle: &Rectangle, normal: DVec3) -> [DVec3; 2] {
+    let xdir = rectangle.xdir;
+    let first = (xdir - normal * normal.dot(xdir)).normalize();
+    [first, normal.cross(first)]
+}
+
+/// Whether a point of a plane is within its sides; `from_corner` leads there.
+fn is_inside(extent: &Extent, normal: DVec3, from_corner: DVec3) -> bool {
+    match extent {
+        Extent::Unbounded => true,
+        Extent::Rectangle(r) => {
+            let [first, second] = sides(r, normal);
+            (0.0..=r.dimensions.x).contains(&from_corner.dot(first))
+                && (0.0..=r.dimensions.y).contains(&from_corner.dot(second))
+        }
+    }
 }
 
 impl Picture {
@@ -202,6 +225,35 @@ impl Picture {
         vec![(2, bytemuck::cast_slice(&packed.objects)), (5, spheres)]
     }
 
+    /// The unit normal of a plane, its point and where it ends.
+    fn plane(&self, object: u32) -> (DVec3, DVec3, &Extent) {
+        match &self.world.scene.objects[object as usize].shape {
+            Shape::Plane {
+                normal,
+                point,
+                extent,
+            } => (normal.normalize(), *point, extent),
+            Shape::Sphere { .. } => panic!("no plane"),
+        }
+    }
+
+    /// A pixel that sees a plane: anywhere; of a rectangle most often in it, at an edge, or next to it.
+    fn toward_plane(&self, rng: &mut Rng, object: u32) -> DVec2 {
+        let (normal, point, extent) = self.plane(object);
+        match extent {
+            Extent::Rectangle(r) if rng.chance(0.7) => {
+                let mut share = [0, 1].map(|_| rng.uniform(-0.1, 1.1));
+                if rng.chance(0.5) {
+                    share[rng.below(2)] = rng.below(2) as f64 + rng.sign() * rng.log(-9.0, -3.0);
+                }
+                let [first, second] = sides(r, normal);
+                let along = first * r.dimensions.x * share[0];
+                self.seen_at(point + along + second * r.dimensions.y * share[1])
+            }
+            Extent::Rectangle(_) | Extent::Unbounded => self.anywhere(rng),
+        }
+    }
+
     /// Planes and rectangles, and points on them.
     pub(crate) fn planes(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 3]) {
         let packed = &self.world.packed;
@@ -218,36 +270,7 @@ impl Picture {
         for kind in 0..2 {
             let objects = &both[kind];
             let n = objects.len();
-            let camera = &self.world.scene.camera;
-            let (items, rays) = self.rays(count, |rng, i| {
-                let Shape::Plane {
-                    normal,
-                    point,
-                    extent,
-                } = &self.world.scene.objects[objects[i % n] as usize].shape
-                else {
-                    panic!("no plane")
-                };
-                match extent {
-                    Some(e) if rng.chance(0.7) => {
-                        let mut share = [0, 1].map(|_| rng.uniform(-0.1, 1.1));
-                        if rng.chance(0.5) {
-                            // To an edge, or next to it.
-                            share[rng.below(2)] =
-                                rng.below(2) as f64 + rng.sign() * rng.log(-9.0, -3.0);
-                        }
-                        let n = normal.normalize();
-                        let first = (e.xdir - n * n.dot(e.xdir)).normalize();
-                        let sides = [first, n.cross(first)];
-                        self.seen_at(
-                            *point
-                                + sides[0] * e.dimensions.x * share[0]
-                                + sides[1] * e.dimensions.y * share[1],
-                        )
-                    }
-                    _ => self.anywhere(rng),
-                }
-            });
+            let (items, rays) = self.rays(count, |rng, i| self.toward_plane(rng, objects[i % n]));
             let (call, record) = calls[kind];
             let body = format!(
                 "{}
@@ -265,27 +288,14 @@ impl Picture {
             inputs.push(records[kind]);
             let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
             for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
-                let Shape::Plane {
-                    normal,
-                    point,
-                    extent,
-                } = &self.world.scene.objects[objects[i % n] as usize].shape
-                else {
-                    panic!("no plane")
-                };
-                let normal = normal.normalize();
-                let point = (*point - camera.viewpoint) / self.unit;
+                let (normal, point, extent) = self.plane(objects[i % n]);
+                let point = (point - self.world.scene.camera.viewpoint) / self.unit;
                 let inverse = normal.dot(w) / normal.dot(point);
                 let [found, error, hit, possible] = answer[0].map(f64::from);
                 seen[kind].error((found - inverse).abs(), error);
                 if inverse > 0.0 {
                     let s = 1.0 / inverse;
-                    let inside = extent.as_ref().is_none_or(|e| {
-                        let first = (e.xdir - normal * normal.dot(e.xdir)).normalize();
-                        let (from, d) = (w * s - point, e.dimensions / self.unit);
-                        (0.0..=d.x).contains(&from.dot(first))
-                            && (0.0..=d.y).contains(&from.dot(normal.cross(first)))
-                    });
+                    let inside = is_inside(extent, normal, (w * s - point) * self.unit);
                     seen[kind].decision(hit == 1.0, possible == 1.0, inside && s >= 1.0);
                     // Nothing is made of a point whose 1/s may be 0.
                     if hit == 1.0 && found > 4.0 * error {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use plumb::gpu::device::Gpu;
-use plumb::prepare::plane::rows;
+use plumb::prepare::extent::rows;
 use plumb::real::V3;
 use plumb::scene::{Object, Shape, Surface};
 use plumb::shader::bounds::up;

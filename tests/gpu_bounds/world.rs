@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use plumb::gpu::device::Gpu;
 use plumb::render::Settings;
-use plumb::scene::{Camera, Extent, Light, Material, Object, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface};
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
@@ -74,10 +74,14 @@ pub(crate) fn scene(rng: &mut Rng, planes: usize, spheres: usize) -> Scene {
         // A wall before the screen is none.
         point.z = point.z.min(-0.5 * size.min(1.0));
         let across = normal.cross(rng.unit());
-        let extent = rng.chance(0.6).then(|| Extent {
-            xdir: across + normal * rng.uniform(0.0, 0.5),
-            dimensions: DVec2::new(rng.log(-1.5, 1.5), rng.log(-1.5, 1.5)),
-        });
+        let extent = if rng.chance(0.6) {
+            Extent::Rectangle(Rectangle {
+                xdir: across + normal * rng.uniform(0.0, 0.5),
+                dimensions: DVec2::new(rng.log(-1.5, 1.5), rng.log(-1.5, 1.5)),
+            })
+        } else {
+            Extent::Unbounded
+        };
         let surface = match i % 4 {
             0 => Surface::Tiled {
                 dimension: DVec2::new(rng.log(-1.0, 1.0), rng.log(-1.0, 1.0)),
@@ -173,10 +177,13 @@ fn true_plane(shape: &Shape) -> TruePlane {
     TruePlane {
         normal,
         point: seen_from_viewpoint(*point),
-        sides: extent.as_ref().map(|e| {
-            let first = (e.xdir - normal * normal.dot(e.xdir)).normalize();
-            ([first, normal.cross(first)], e.dimensions / UNIT)
-        }),
+        sides: match extent {
+            Extent::Unbounded => None,
+            Extent::Rectangle(r) => {
+                let first = (r.xdir - normal * normal.dot(r.xdir)).normalize();
+                Some(([first, normal.cross(first)], r.dimensions / UNIT))
+            }
+        },
     }
 }
 

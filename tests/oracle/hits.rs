@@ -1,12 +1,12 @@
-//! Where a line meets the objects (SEMANTICS 3), each at most once, nearest first: all that closest hits, shadows and rays
-//! straight through ask for.
+//! Where a line meets the objects (docs/SCENE.md, "Hits"), each at most once, nearest first: all that closest hits,
+//! shadows and rays straight through ask for.
 //!
 //! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface. Parameters,
 //! not distances: the direction has any length.
 
 use std::cmp::Ordering;
 
-use plumb::scene::Shape;
+use plumb::scene::{Extent, Shape};
 
 use super::Fault;
 use super::real::{Real, Unresolved};
@@ -165,15 +165,19 @@ impl World<'_> {
 
     /// Whether a point of the plane that an object lies on is the object's: a rectangle ends.
     fn within(&self, body: &Body<'_>, hit: &Vector) -> Result<bool, Unresolved> {
-        let (
+        match body.object.shape {
             Shape::Plane {
-                extent: Some(_), ..
-            },
-            Form::Plane { point: corner, .. },
-            Some(sides),
-        ) = (&body.object.shape, &body.form, &body.sides)
-        else {
-            return Ok(true);
+                extent: Extent::Rectangle(_),
+                ..
+            } => {}
+            Shape::Plane {
+                extent: Extent::Unbounded,
+                ..
+            }
+            | Shape::Sphere { .. } => return Ok(true),
+        }
+        let (Form::Plane { point: corner, .. }, Some(sides)) = (&body.form, &body.sides) else {
+            panic!("a rectangle is a plane with sides");
         };
         let from_corner = hit - corner;
         for i in [0, 1] {

@@ -1,4 +1,4 @@
-//! Where samples lie (SEMANTICS 6), written from the text alone.
+//! Where samples lie (docs/SCENE.md, "Bytes and samples"), written from the text alone.
 
 use std::num::Wrapping;
 

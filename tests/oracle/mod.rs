@@ -1,4 +1,4 @@
-//! The oracle of the tests: every byte of any scene, in multiprecision or exactly, from the text of SEMANTICS alone.
+//! The oracle of the tests: every byte of any scene, in multiprecision or exactly, from the text of docs/SCENE.md alone.
 //!
 //! It shares the parsed scene with plumb, plain f64, and nothing else: no geometry, no arithmetic. Near is never taken for
 //! equal: what balls of 4,096 bits and towers of 7 square roots do not decide is reported, not guessed.
@@ -51,7 +51,7 @@ pub(crate) fn rendered_as_asked(report: &Report, backend: Backend) {
     assert!(report.backend == backend || beyond, "{:?}", report.fallback);
 }
 
-/// What SEMANTICS leaves to settings.
+/// What docs/SCENE.md, "What a picture is", leaves to options, and what a test breaks on purpose.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Rules {
     pub(crate) tolerance: f64,

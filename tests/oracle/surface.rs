@@ -1,4 +1,4 @@
-//! What a surface reflects at a hit (SEMANTICS 4).
+//! What a surface reflects at a hit (docs/SCENE.md, "What a surface reflects").
 
 use dashu_int::IBig;
 use plumb::scene::{Surface, TextureMode};

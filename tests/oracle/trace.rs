@@ -1,4 +1,4 @@
-//! The colour of a ray (SEMANTICS 5) and of a pixel (SEMANTICS 2 and 6).
+//! The colour of a ray and of a pixel (docs/SCENE.md: "Rays", "The colour of a ray", "Bytes and samples").
 
 use std::cell::Cell;
 use std::cmp::Ordering;

@@ -1,13 +1,13 @@
 //! The scene in exact reals: made from `plumb::scene` once a thread, read by `hits`, `surface` and `trace`.
 //!
 //! Normals keep the length that the file gives them, and so do the sides of rectangles: lengths, which take square roots,
-//! stand apart, where SEMANTICS wants unit vectors.
+//! stand apart, where docs/SCENE.md wants unit vectors.
 
 use std::collections::HashMap;
 
 use dashu_ratio::RBig;
 use glam::{DVec2, DVec3};
-use plumb::scene::{Material, Object, Scene, Shape, Surface};
+use plumb::scene::{Extent, Material, Object, Scene, Shape, Surface};
 
 use super::Rules;
 use super::angle::cosine_of;
@@ -187,16 +187,16 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
             };
             let normal = Vector::from_f64(normal);
             let along = match (extent, object.surface) {
-                (Some(extent), _) => Some((extent.xdir, extent.dimensions)),
+                (Extent::Rectangle(r), _) => Some((r.xdir, r.dimensions)),
                 (
-                    None,
+                    Extent::Unbounded,
                     Surface::Tiled {
                         dimension,
                         xdir: Some(xdir),
                         ..
                     },
                 ) => Some((xdir, dimension)),
-                _ => None,
+                (Extent::Unbounded, _) => None,
             };
             Body {
                 object,

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 
-use crate::scene::{Scene, Shape, Surface, TextureMode};
+use crate::scene::{Extent, Scene, Shape, Surface, TextureMode};
 
 /// An object, as the shader has it.
 #[repr(C)]
@@ -130,23 +130,48 @@ struct Pack<'a> {
     firsts: Vec<u32>,
 }
 
+/// A plane's directions, for what goes along them.
+struct Frame {
+    /// Of unit length.
+    normal: DVec3,
+    /// The direction that a rectangle or tiles follow, if there is one.
+    xdir: Option<DVec3>,
+    /// Lengths of a rectangle's sides.
+    sides: DVec2,
+}
+
 impl Pack<'_> {
     fn object(&self, index: usize) -> Object {
-        let (scene, view) = (self.scene, self.view);
-        let object = &scene.objects[index];
+        let object = &self.scene.objects[index];
         let mut record = Object {
             material: object.material as u32,
             altmaterial: object.material as u32,
             ..Object::zeroed()
         };
-        // The plane's two directions, where something goes along them.
-        let mut xdir = None;
-        let mut unit = DVec3::ZERO;
-        let mut sides = DVec2::ONE;
-        match object.shape {
+        let mut frame = self.shape(&mut record, &object.shape);
+        record.surface = self.surface(&mut record, object.surface, &mut frame);
+        if let Some(along) = frame.xdir {
+            let [x, y] = if self.prepared {
+                directions(frame.normal, along)
+            } else {
+                [along, DVec3::ZERO]
+            };
+            (record.xdir, record.ydir) = (f32s(x), f32s(y));
+        }
+        record
+    }
+
+    /// Packs where the object is.
+    fn shape(&self, record: &mut Object, shape: &Shape) -> Frame {
+        let mut frame = Frame {
+            normal: DVec3::ZERO,
+            xdir: None,
+            sides: DVec2::ONE,
+        };
+        match *shape {
             Shape::Sphere { center, radius } => {
                 record.is_sphere = 1;
-                record.point = f32s(center - view);
+                record.point = f32s(center - self.view);
                 record.radius = radius as f32;
             }
             Shape::Plane {
@@ -154,46 +179,52 @@ impl Pack<'_> {
                 point,
                 extent,
             } => {
-                unit = normal.normalize();
+                let unit = normal.normalize();
+                frame.normal = unit;
                 record.normal = f32s(if self.prepared { unit } else { normal });
-                record.point = f32s(point - view);
-                record.distance = unit.dot(point - view) as f32;
-                if let Some(extent) = extent {
-                    xdir = Some(extent.xdir);
-                    sides = extent.dimensions;
-                    record.extent = sides.as_vec2().to_array();
+                record.point = f32s(point - self.view);
+                record.distance = unit.dot(point - self.view) as f32;
+                match extent {
+                    Extent::Unbounded => {}
+                    Extent::Rectangle(rectangle) => {
+                        frame.xdir = Some(rectangle.xdir);
+                        frame.sides = rectangle.dimensions;
+                        record.extent = rectangle.dimensions.as_vec2().to_array();
+                    }
                 }
             }
         }
-        record.surface = match object.surface {
+        frame
+    }
+
+    /// Packs what the object looks like, and returns its `surface`.
+    fn surface(&self, record: &mut Object, surface: Surface, frame: &mut Frame) -> u32 {
+        let scene = self.scene;
+        match surface {
             Surface::Plain => PLAIN,
             Surface::Procedural { shader } if record.is_sphere != 0 => PSPHERE + shader,
             Surface::Procedural { shader } => {
-                self.begin(&mut record, &DVec3::AXES, [2.0; 3], 1000.0);
+                self.begin(record, &DVec3::AXES, [2.0; 3], 1000.0);
                 PPLANE + shader
             }
             Surface::Tiled {
                 dimension,
                 altmaterial,
-                xdir: along,
+                xdir,
             } => {
                 record.altmaterial = altmaterial as u32;
                 record.dimension = dimension.as_vec2().to_array();
                 let per_unit = [1.0 / dimension.x, 1.0 / dimension.y, 0.0];
-                let begins = TILES_BEGIN;
-                match along {
-                    None => {
-                        let rows = [DVec3::X, DVec3::Z, DVec3::ZERO];
-                        self.begin_at(&mut record, &rows, per_unit, [begins; 2]);
-                        TILED
-                    }
+                let (surface, [x, y]) = match xdir {
+                    None => (TILED, [DVec3::X, DVec3::Z]),
                     Some(along) => {
-                        xdir = Some(along);
-                        let [x, y] = directions(unit, along);
-                        self.begin_at(&mut record, &[x, y, DVec3::ZERO], per_unit, [begins; 2]);
-                        TILED_ALONG
+                        frame.xdir = Some(along);
+                        (TILED_ALONG, directions(frame.normal, along))
                     }
-                }
+                };
+                let begins = [TILES_BEGIN; 2];
+                self.begin_at(record, &[x, y, DVec3::ZERO], per_unit, begins);
+                surface
             }
             Surface::Textured { texture, mode } => {
                 let texels = &scene.textures[texture].texels;
@@ -206,22 +237,13 @@ impl Pack<'_> {
                 let sizes = DVec2::new(f64::from(texels.width), f64::from(texels.height));
                 let pixels = DVec2::from(scene.camera.pixeldim.map(f64::from));
                 let per_unit = match mode {
-                    TextureMode::Fit => sizes / sides,
+                    TextureMode::Fit => sizes / frame.sides,
                     TextureMode::Tile => pixels / scene.camera.worlddim,
                 };
                 record.dimension = per_unit.as_vec2().to_array();
                 TEXTURED
             }
-        };
-        if let Some(along) = xdir {
-            let [x, y] = if self.prepared {
-                directions(unit, along)
-            } else {
-                [along, DVec3::ZERO]
-            };
-            (record.xdir, record.ydir) = (f32s(x), f32s(y));
         }
-        record
     }
 
     /// Where the indices of tiles begin, as seen from the viewpoint: floor(row·H·per_unit + ...).

@@ -1,7 +1,7 @@
 //! Bounds contain the exact result, are not absurdly wide, and a broken one is noticed.
 
 use super::*;
-use crate::prepare::exact::{Ratio, abs, ratio};
+use crate::real::rational::{Ratio, abs, ratio};
 
 /// Random numbers of many sizes, and numbers next to powers of two and to each other.
 fn random() -> impl FnMut() -> f64 {

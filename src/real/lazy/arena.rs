@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use super::Lazy;
 use super::ball::Ball;
 use super::tower::{Element, Tower};
-use crate::prepare::exact::Ratio;
+use crate::real::rational::Ratio;
 use crate::real::{Bounded, Real};
 
 /// How hard it was to decide what was asked.

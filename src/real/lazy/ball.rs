@@ -6,8 +6,8 @@ use dashu_base::{BitTest, SquareRoot};
 use dashu_int::{IBig, UBig};
 
 use super::mag::{Low, Mag, top};
-use crate::prepare::exact::Ratio;
 use crate::real::Bounded;
+use crate::real::rational::Ratio;
 
 /// Every real within `rad` of mid·2^exp.
 #[derive(Debug, Clone)]

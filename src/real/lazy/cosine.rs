@@ -6,6 +6,7 @@ use super::Lazy;
 use super::ball::Ball;
 use super::mag::Mag;
 use crate::real::Real;
+use crate::real::rational::ratio;
 
 /// Bits beyond those asked for: the series below lose fewer than 16.
 const GUARD: usize = 64;
@@ -42,7 +43,7 @@ fn pi(bits: usize) -> IBig {
 /// 2³² of them.
 pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
     let precision = bits + GUARD;
-    let degrees = crate::prepare::exact::ratio(angle);
+    let degrees = ratio(angle);
     let phi = pi(precision) * degrees.numerator().clone()
         / (IBig::from(degrees.denominator().clone()) * IBig::from(180));
     let square = (&phi * &phi) >> precision;

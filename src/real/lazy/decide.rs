@@ -8,7 +8,7 @@ use super::arena::{Arena, Effort, Node, Op, ZERO};
 use super::ball::Ball;
 use super::tower::{Element, TooHard};
 use super::{Lazy, cosine};
-use crate::prepare::exact::{Ratio, ratio};
+use crate::real::rational::{Ratio, ratio};
 use crate::real::{Bounded, Real, Undecided};
 
 /// The precisions, in bits, in which an expression is computed.

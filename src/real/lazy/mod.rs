@@ -22,7 +22,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use dashu_int::IBig;
 
 use super::{Bounded, Real, Undecided};
-use crate::prepare::exact::Ratio;
+use crate::real::rational::Ratio;
 use arena::{Op, with};
 
 /// A real number, of which as much is computed as is asked for. It belongs to the thread that made it, until

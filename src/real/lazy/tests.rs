@@ -8,7 +8,7 @@ use super::arena::with;
 use super::ball::Ball;
 use super::mag::Mag;
 use super::{Effort, Lazy, cosine};
-use crate::prepare::exact::{Ratio, abs, power_of_two, ratio};
+use crate::real::rational::{Ratio, abs, power_of_two, ratio};
 use crate::real::{Bounded, Real, Undecided};
 
 fn number(value: f64) -> Lazy {

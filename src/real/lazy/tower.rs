@@ -1,16 +1,16 @@
-//! Exact numbers: rationals, and fields that grow out of them by up to four square roots.
+//! Exact numbers: rationals, and fields that grow out of them by up to six square roots (`MOST_ROOTS` in `decide`).
 //!
-//! K₀ = ℚ, K₍ᵢ₊₁₎ = Kᵢ(√cᵢ) with cᵢ > 0 in Kᵢ that has no root there. An element of K₍ᵢ₊₁₎ is a + b√cᵢ with a and b in Kᵢ, in
-//! one way only; so it is 0 just if all coefficients are. That is what proves a tie.
+//! K₀ = ℚ, K₍ᵢ₊₁₎ = Kᵢ(√cᵢ) with cᵢ > 0 in Kᵢ that has no root there. An element of K₍ᵢ₊₁₎ is a + b√cᵢ with a and b in
+//! Kᵢ, in one way only; so it is 0 just if all coefficients are. That is what proves a tie.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
 use std::rc::Rc;
 
-use dashu_base::{BitTest, SquareRootRem};
+use dashu_base::BitTest;
 use dashu_int::UBig;
 
-use crate::prepare::exact::Ratio;
+use crate::real::rational::{self, Ratio};
 
 /// A number of the tower.
 #[derive(Debug, Clone)]
@@ -274,7 +274,7 @@ impl Tower {
     /// a² − b²c = (m² − l²c)² is a square n², and m² = (a ± n)/2.
     fn root_in(&self, x: &Element, level: usize) -> Result<Option<Element>, TooHard> {
         if let (Element::Rational(value), 0) = (x, level) {
-            return Ok(rational_root(value).map(Element::Rational));
+            return Ok(rational::root(value).map(Element::Rational));
         }
         let (a, b) = x.split(level);
         let below = level - 1;
@@ -301,23 +301,6 @@ impl Tower {
         }
         Ok(None)
     }
-}
-
-/// The root of a rational number, if it is rational.
-fn rational_root(value: &Ratio) -> Option<Ratio> {
-    if *value < Ratio::ZERO {
-        return None;
-    }
-    let (numerator, denominator) = value.clone().canonicalize().into_parts();
-    let (_, numerator) = numerator.into_parts();
-    let root = |n: &UBig| {
-        let (root, rest) = n.sqrt_rem();
-        rest.is_zero().then_some(root)
-    };
-    Some(Ratio::from_parts(
-        root(&numerator)?.into(),
-        root(&denominator)?,
-    ))
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
 use super::{Packed, f32x3};
-use crate::prepare::{self, Prepared, World, world};
+use crate::prepare::extent::Extent;
+use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{U, most, up};
 use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
@@ -137,7 +138,7 @@ fn bits(level: &[usize]) -> u32 {
         .sum()
 }
 
-fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> WorldPlane {
+fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> WorldPlane {
     let mut keep = [1.0; 3];
     let mut own = [0.0; 3];
     let mut highest = world.highest.value as f32;
@@ -151,12 +152,10 @@ fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> Wo
     }
     let zero = V3::exact(glam::DVec3::ZERO);
     let none = Bounded::zero();
-    let (rows, origin, dimensions) = plane
-        .extent
-        .as_ref()
-        .map_or(([zero; 2], [none; 2], [none; 2]), |e| {
-            (e.rows, e.origin, e.dimensions)
-        });
+    let (bounded, rows, origin, dimensions) = match &plane.extent {
+        Extent::Unbounded => (0, [zero; 2], [none; 2], [none; 2]),
+        Extent::Rectangle(r) => (1, r.rows, r.origin, r.dimensions),
+    };
     let most_of = |values: [Bounded; 2]| most(values[0]).max(most(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),
@@ -171,14 +170,14 @@ fn world_plane(world: &World<Bounded>, plane: &world::WorldPlane<Bounded>) -> Wo
         origin_1: origin[1].value as f32,
         lengths: dimensions.map(|d| d.value as f32),
         level: bits(&plane.level),
-        bounded: u32::from(plane.extent.is_some()),
+        bounded,
         highest,
         sides_error: up(8.0 * U * (most_of(origin) + most_of(dimensions))),
         pad: Default::default(),
     }
 }
 
-fn world_sphere(world: &World<Bounded>, sphere: &world::WorldSphere<Bounded>) -> WorldSphere {
+fn world_sphere(world: &World<Bounded>, sphere: &prepare::WorldSphere<Bounded>) -> WorldSphere {
     WorldSphere {
         center: f32x3(sphere.center),
         radius: sphere.radius.value as f32,

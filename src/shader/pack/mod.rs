@@ -20,6 +20,7 @@ use super::records::{
     BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere,
     SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
+use crate::prepare::plane::Sides;
 use crate::prepare::tiles::Tiles;
 use crate::prepare::{self, Prepared, View};
 use crate::real::{Bounded, V3};
@@ -163,10 +164,11 @@ impl Packed {
         for plane in &scene.planes {
             let group = surfaces.shared(plane.object);
             match &plane.sides {
-                None => self
-                    .planes
-                    .push(primary::plane(&scene.camera, plane, screen, group)),
-                Some(sides) => self.rectangles.push(primary::rectangle(
+                Sides::Unbounded => {
+                    self.planes
+                        .push(primary::plane(&scene.camera, plane, screen, group))
+                }
+                Sides::Rectangle(sides) => self.rectangles.push(primary::rectangle(
                     &scene.camera,
                     plane,
                     sides,
@@ -315,7 +317,7 @@ pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
 }
 
 fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
-    let unit = prepare::exact::two_to(-camera.scale);
+    let unit = crate::real::rational::two_to(-camera.scale);
     let reach = screen.reach(camera.anchor);
     let d = camera.distance.value;
     let offset = camera.offset.map(most);

@@ -1,6 +1,7 @@
 //! What primary rays can hit, as forms over the pixel with literal error bounds: planes, rectangles, spheres.
 
 use crate::prepare::camera::ANCHOR_LIMIT;
+use crate::prepare::plane::Side;
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
@@ -60,30 +61,19 @@ pub(super) fn plane(
 pub(super) fn rectangle(
     camera: &Camera<Bounded>,
     plane: &prepare::Plane<Bounded>,
-    sides: &prepare::plane::Sides<Bounded>,
+    sides: &[Side<Bounded>; 4],
     screen: &Screen,
     group: u32,
 ) -> Rectangle {
     let reach = screen.reach(camera.anchor);
     let base = self::plane(camera, plane, screen, group);
-    let q = plane.inverse;
-    let side = |i: usize| -> Form<3> {
-        if let Some(exact) = sides.steps[i]
-            .as_ref()
+    let side = |side: &Side<Bounded>| -> Form<3> {
+        let exact = side.step.as_ref();
+        exact
             .and_then(|s| step(s, camera.anchor, screen))
-        {
-            return exact;
-        }
-        let p = sides.forms[i % 2];
-        let d = sides.dimensions[i % 2];
-        let form = if i < 2 {
-            p
-        } else {
-            [0, 1, 2].map(|k| d * q[k] - p[k])
-        };
-        linear(over_pixels(camera, &form), reach, screen)
+            .unwrap_or_else(|| linear(over_pixels(camera, &side.form), reach, screen))
     };
-    let [a, b, c, d] = [side(0), side(1), side(2), side(3)];
+    let [a, b, c, d] = sides.each_ref().map(side);
     Rectangle {
         inverse: base.inverse,
         object: base.object,

@@ -70,10 +70,10 @@ pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
 }
 
 pub(super) fn texplane(textured: &Textured<Bounded>, first: u32) -> Texplane {
-    let extent = &textured.extent;
+    let rectangle = &textured.rectangle;
     let [u, v] = textured.per_unit;
-    let rows = [extent.rows[0] * u, extent.rows[1] * v];
-    let origins = [extent.origin[0] * u, extent.origin[1] * v];
+    let rows = [rectangle.rows[0] * u, rectangle.rows[1] * v];
+    let origins = [rectangle.origin[0] * u, rectangle.origin[1] * v];
     Texplane {
         row_0: f32x3(rows[0]),
         origin_0: origins[0].value as f32,

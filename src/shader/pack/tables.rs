@@ -3,11 +3,11 @@
 
 use dashu_int::IBig;
 
-use crate::prepare::exact::parity;
 use crate::prepare::index::{Index, indices};
 use crate::prepare::{Prepared, Surface};
 use crate::procedural::{self, Family};
 use crate::real::Bounded;
+use crate::real::rational::parity;
 use crate::scene::Scene;
 use crate::settings::{Precision, Settings};
 

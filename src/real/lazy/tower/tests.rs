@@ -1,7 +1,7 @@
 //! Identities of square roots, and numbers that are no such identity.
 
 use super::*;
-use crate::prepare::exact::ratio;
+use crate::real::rational::ratio;
 
 fn number(value: f64) -> Element {
     Element::Rational(ratio(value))

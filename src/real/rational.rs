@@ -1,4 +1,5 @@
-//! Exact rational arithmetic for the host: facts of the scene are decided here, not by rounding.
+//! Exact rational arithmetic: what `prepare` decides facts of the scene by, and the field that `lazy`'s towers stand
+//! on.
 
 use dashu_base::{Sign, SquareRoot as _};
 use dashu_int::{IBig, UBig};

@@ -1,0 +1,45 @@
+//! Where a primary ray hits, in world coordinates: what `--debug`, `probe` and `bench` tell of a hit that `trace`
+//! found.
+
+use glam::DVec3;
+
+use super::camera::Ray;
+use super::sphere::sphere_from_center;
+use super::trace::Hit;
+use crate::prepare::Prepared;
+use crate::real::Real;
+use crate::real::rational::two_to;
+use crate::scene::{Scene, Shape};
+
+/// Where a primary ray hits, in world coordinates.
+///
+/// On a plane perpendicular to an axis that coordinate is the plane's own, exactly; on a sphere the point is found from
+/// the center, where a small sphere that is far away has its bits.
+pub fn hit_point<R: Real>(
+    scene: &Scene,
+    prepared: &Prepared<R>,
+    ray: &Ray<R>,
+    hit: &Hit<R>,
+) -> DVec3 {
+    let unit = two_to(prepared.camera.scale);
+    let along = || scene.camera.viewpoint + ray.w.approx() * (unit / hit.inverse.approx());
+    match scene.objects[hit.object].shape {
+        Shape::Plane { normal, point, .. } => {
+            let mut at = along();
+            for axis in 0..3 {
+                if (0..3).all(|other| other == axis || normal[other] == 0.0) {
+                    at[axis] = point[axis];
+                }
+            }
+            at
+        }
+        Shape::Sphere { center, .. } => {
+            let sphere = prepared.spheres.get(hit.index).copied();
+            let sphere = sphere.or_else(|| prepared.make_sphere(hit.index));
+            sphere.map_or_else(along, |sphere| {
+                let camera = &prepared.camera;
+                center + sphere_from_center(camera, &sphere, ray, hit.inverse).approx() * unit
+            })
+        }
+    }
+}

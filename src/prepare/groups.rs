@@ -1,0 +1,109 @@
+//! Which objects lie on the same surface, exactly: such objects share a number.
+
+use std::collections::HashMap;
+
+use dashu_ratio::RBig;
+
+use crate::real::rational::{Ratio, dot, is_zero, ratio3};
+use crate::scene::{Object, Scene, Shape};
+
+/// For each object the number of the surface that it is or is part of: the same for the same set of points. Where equal
+/// spheres need not be told, spheres have none in common.
+pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
+    let mut groups = Groups::default();
+    let of = |object: &Object| match object.shape {
+        Shape::Sphere { .. } if !equal_spheres => groups.one_more(),
+        Shape::Sphere { .. } | Shape::Plane { .. } => groups.of(&object.shape),
+    };
+    scene.objects.iter().map(of).collect()
+}
+
+/// Numbers for surfaces, the same for the same point set.
+#[derive(Debug, Default)]
+struct Groups {
+    planes: HashMap<[RBig; 4], u32>,
+    spheres: HashMap<[u64; 4], u32>,
+    count: u32,
+}
+
+impl Groups {
+    fn of(&mut self, shape: &Shape) -> u32 {
+        let new = self.count;
+        let group = match *shape {
+            Shape::Plane { normal, point, .. } => {
+                let n = ratio3(normal);
+                // N·X = N·Q with the first component of N that is not 0 scaled to 1.
+                let lead = n
+                    .iter()
+                    .find(|c| !is_zero(c))
+                    .cloned()
+                    .unwrap_or(Ratio::ONE);
+                let offset = dot(&n, &ratio3(point)) / &lead;
+                let [x, y, z] = n.map(|c| (c / &lead).canonicalize());
+                *self
+                    .planes
+                    .entry([x, y, z, offset.canonicalize()])
+                    .or_insert(new)
+            }
+            Shape::Sphere { center, radius } => {
+                // Adding 0 makes −0 and 0 the same.
+                let key =
+                    [center.x + 0.0, center.y + 0.0, center.z + 0.0, radius].map(f64::to_bits);
+                *self.spheres.entry(key).or_insert(new)
+            }
+        };
+        if group == new {
+            self.one_more();
+        }
+        group
+    }
+
+    /// The number of a surface that nothing shares.
+    fn one_more(&mut self) -> u32 {
+        self.count += 1;
+        self.count - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    fn plane(normal: [f64; 3], point: [f64; 3]) -> Shape {
+        Shape::Plane {
+            normal: normal.into(),
+            point: point.into(),
+            extent: crate::scene::Extent::Unbounded,
+        }
+    }
+
+    fn same_group(a: &Shape, b: &Shape) -> bool {
+        let mut groups = Groups::default();
+        groups.of(a) == groups.of(b)
+    }
+
+    #[test]
+    fn coincident_surfaces_share_a_group() {
+        let wall = plane([3.0, 0.0, 1.0], [0.0, 0.0, 0.0]);
+        assert!(same_group(
+            &wall,
+            &plane([-6.0, 0.0, -2.0], [1.0, 7.0, -3.0])
+        ));
+        assert!(!same_group(
+            &wall,
+            &plane([-6.0, 0.0, -2.0], [1.0, 7.0, -3.0 - 1e-15])
+        ));
+        assert!(!same_group(
+            &wall,
+            &plane([3.0, 1e-300, 1.0], [0.0, 0.0, 0.0])
+        ));
+        let ball = |z: f64| Shape::Sphere {
+            center: DVec3::new(0.0, 1.0, z),
+            radius: 2.0,
+        };
+        assert!(same_group(&ball(0.0), &ball(-0.0)));
+        assert!(!same_group(&ball(0.0), &ball(f64::MIN_POSITIVE)));
+    }
+}

@@ -1,0 +1,204 @@
+//! A scene made ready: the top of `prepare`, over all its parts.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::camera::Camera;
+use super::groups::groups;
+use super::hidden::hidden;
+use super::later::{Later, Laters, balls};
+use super::material::Material;
+use super::plane::Plane;
+use super::sphere::Sphere;
+use super::surface::Surface;
+use super::tiles::{self, Tiles};
+use super::view::View;
+use super::world::World;
+use crate::real::Real;
+use crate::scene::{Scene, Shape, Texels};
+
+/// A scene made ready for tracing rays from its viewpoint, in the number type `R`.
+#[derive(Debug, Clone)]
+pub struct Prepared<R> {
+    /// How a pixel becomes a ray.
+    pub camera: Camera<R>,
+    /// The planes that a primary ray can hit, in file order.
+    pub planes: Vec<Plane<R>>,
+    /// The spheres that a primary ray can hit, in file order; where they are in tiles, those that are seen.
+    pub spheres: Vec<Sphere<R>>,
+    /// Where on the screen they are, if there are many.
+    pub tiles: Option<Arc<Tiles>>,
+    /// What spheres are made from that are not in `spheres`.
+    pub later: Option<Later>,
+    /// One for each object of the scene: what it looks like.
+    pub surfaces: Vec<Surface<R>>,
+    /// One for each object of the scene: index of its material.
+    pub materials: Arc<Vec<usize>>,
+    /// One for each object of the scene: whether it is a plane, not a sphere.
+    pub is_plane: Arc<Vec<bool>>,
+    /// One for each object of the scene: the number of the surface that it is or is part of.
+    pub groups: Arc<Vec<u32>>,
+    /// One for each object of the scene: whether it is never hit. `planes` and `spheres` lack those, here and in `world`.
+    pub hidden: Arc<Vec<bool>>,
+    /// Whether some object lets light through.
+    pub any_clear: bool,
+    /// The materials of the scene.
+    pub palette: Vec<Material<R>>,
+    /// The textures of the scene.
+    pub textures: Vec<Arc<Texels>>,
+    /// What rays from elsewhere than the viewpoint need; None without lights, where there are no such rays.
+    pub world: Option<World<R>>,
+}
+
+impl<R: Real> Prepared<R> {
+    /// Prepares `scene`.
+    pub fn new(scene: &Scene, view: impl Into<View>) -> Self {
+        let view = view.into();
+        let lit = !scene.lights.is_empty();
+        // Of many spheres the tiles leave out equal ones.
+        let equal_spheres = lit || scene.objects.len() < tiles::WORTHWHILE;
+        let groups = Arc::new(groups(scene, equal_spheres));
+        let hidden = hidden(scene, &groups, view.screen_tolerance);
+        let mut prepared = Self::of(scene, view, true, &hidden);
+        if scene.objects.len() >= tiles::WORTHWHILE {
+            let (spheres, tiles) = Tiles::sorted(scene, &prepared.camera, view, &hidden);
+            prepared.tiles = (!spheres.is_empty()).then(|| Arc::new(tiles));
+            prepared.spheres = spheres;
+        }
+        let materials = scene.objects.iter().map(|object| object.material);
+        let is_plane = scene.objects.iter().map(|object| match object.shape {
+            Shape::Plane { .. } => true,
+            Shape::Sphere { .. } => false,
+        });
+        prepared.materials = Arc::new(materials.collect());
+        prepared.is_plane = Arc::new(is_plane.collect());
+        let scale = prepared.camera.scale;
+        prepared.world = lit.then(|| {
+            World::new(
+                scene,
+                scale,
+                view.screen_tolerance,
+                Arc::clone(&groups),
+                &hidden,
+            )
+        });
+        prepared.groups = groups;
+        prepared.hidden = Arc::new(hidden);
+        prepared
+    }
+
+    /// Prepares a scene that has been prepared before in another number type, and shares with that what is no number. Where
+    /// `laters` has spheres, they are made when they are asked for.
+    pub fn again<S: Real>(
+        scene: &Scene,
+        view: View,
+        before: &Prepared<S>,
+        laters: &Laters,
+    ) -> Self {
+        let prepared = Self::of(scene, view, laters.primary.is_none(), &before.hidden);
+        let world = before.world.as_ref().map(|world| {
+            let scale = prepared.camera.scale;
+            let later = laters.world.as_ref();
+            let hidden = &before.hidden;
+            World::again(scene, scale, view.screen_tolerance, world, hidden, later)
+        });
+        Self {
+            tiles: before.tiles.clone(),
+            later: laters.primary.clone(),
+            materials: Arc::clone(&before.materials),
+            is_plane: Arc::clone(&before.is_plane),
+            groups: Arc::clone(&before.groups),
+            hidden: Arc::clone(&before.hidden),
+            world,
+            ..prepared
+        }
+    }
+
+    /// The scene without tiles, world and tables; spheres in file order if they are wanted and few.
+    fn of(scene: &Scene, view: View, with_spheres: bool, hidden: &[bool]) -> Self {
+        let camera = Camera::new(&scene.camera);
+        let mut planes = Vec::new();
+        let mut surfaces = Vec::with_capacity(scene.objects.len());
+        // Many spheres are made with their tiles, or later.
+        let few = with_spheres && scene.objects.len() < tiles::WORTHWHILE;
+        let mut spheres = Vec::new();
+        for (index, object) in scene.objects.iter().enumerate() {
+            surfaces.push(Surface::new(scene, object));
+            match object.shape {
+                _ if hidden[index] => {}
+                Shape::Plane {
+                    normal,
+                    point,
+                    extent,
+                } => planes.extend(Plane::new(
+                    &scene.camera,
+                    view,
+                    index,
+                    normal,
+                    point,
+                    &extent,
+                )),
+                Shape::Sphere { center, radius } if few => spheres.extend(Sphere::new(
+                    scene.camera.viewpoint,
+                    &camera,
+                    index,
+                    center,
+                    radius,
+                )),
+                Shape::Sphere { .. } => {}
+            }
+        }
+        let any_clear = scene
+            .objects
+            .iter()
+            .any(|object| scene.materials[object.material].transparency != 0.0);
+        let palette = scene.materials.iter().map(Material::new).collect();
+        let textures = scene
+            .textures
+            .iter()
+            .map(|texture| Arc::clone(&texture.texels))
+            .collect();
+        Self {
+            camera,
+            planes,
+            spheres,
+            tiles: None,
+            later: None,
+            surfaces,
+            materials: Arc::default(),
+            is_plane: Arc::default(),
+            groups: Arc::default(),
+            hidden: Arc::default(),
+            any_clear,
+            palette,
+            textures,
+            world: None,
+        }
+    }
+
+    /// What the spheres are made from one by one in another number type, where they are many.
+    pub fn laters(&self, scene: &Scene) -> Laters {
+        let world = self.world.as_ref().filter(|world| world.bvh.is_some());
+        if self.tiles.is_none() && world.is_none() {
+            return Laters::default();
+        }
+        let (balls, scale) = (balls(scene), self.camera.scale);
+        Laters {
+            primary: self.tiles.as_ref().map(|_| {
+                let order = self.spheres.iter().map(|s| s.object);
+                Later::new(scene, scale, &balls, order, HashMap::new())
+            }),
+            world: world.map(|world| world.later(scene, scale, &balls)),
+        }
+    }
+
+    /// How many spheres a primary ray can hit.
+    pub fn sphere_count(&self) -> usize {
+        self.later.as_ref().map_or(self.spheres.len(), Later::count)
+    }
+
+    /// A sphere that is not in `spheres`.
+    pub fn make_sphere(&self, index: usize) -> Option<Sphere<R>> {
+        self.later.as_ref()?.primary(&self.camera, index)
+    }
+}
