@@ -1,12 +1,12 @@
 #!/bin/sh
-# Runs all tests: sh scripts/test.sh [what `cargo test` takes, such as --test vectors_gpu]
+# Runs all tests: sh scripts/test.sh [what `cargo test` takes, such as --test gpu vectors_gpu]
 #
 # Many tests run on a GPU, and fail without one; a software Vulkan driver will do. Where there is none, and this script
 # may (as root on Debian or Ubuntu), it installs one; elsewhere it says what to install.
 #
 # The window of `plumb preview` is tested on Xvfb, an X server without a screen (Linux only). The same goes for that.
 #
-# tests/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian package (32 MB,
+# tests/gpu/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian package (32 MB,
 # nothing is installed) and kept beside what is built. PLUMB_SECOND_DRIVER names the JSON file of another one.
 set -eu
 cd "$(dirname "$0")/.."

@@ -5,6 +5,7 @@ use std::fs;
 use sha2::{Digest, Sha256};
 
 use super::desk::{Desk, ROOM, ppm, scenes};
+use super::lit::rendered;
 
 #[test]
 fn the_size_is_in_place_of_pixeldim() {
@@ -212,4 +213,75 @@ fn the_debug_listing_is_on_stderr_and_keeps_to_the_rows() {
         lines[41],
         "PIX   40   16 - rightwall    HIT:(  6.4,   1.2,  -4.8)"
     );
+}
+
+#[test]
+fn values_of_the_options_about_light_are_checked() {
+    let (desk, picture) = rendered(&[]);
+    let cases: [(&[&str], &str); 12] = [
+        (&["--samples", "0"], "1..=65536"),
+        (&["--samples", "65537"], "1..=65536"),
+        (&["--samples", "4.5"], "--samples"),
+        (&["--jitter", "blue"], "hash, course"),
+        (&["--max-path", "-1"], "0 or more"),
+        (&["--max-path", "nan"], "0 or more"),
+        (&["--max-path", "inf"], "0 or more"),
+        (&["--max-path", "far"], "like 20"),
+        (&["--max-rays", "0"], "--max-rays"),
+        (&["--max-rays", "4294967296"], "--max-rays"),
+        (
+            &["--samples", "2", "--debug", "pix"],
+            "leave one of them out",
+        ),
+        (
+            &[
+                "--samples",
+                "65536",
+                "--jitter",
+                "course",
+                "--size",
+                "1000000x1",
+            ],
+            "--jitter hash",
+        ),
+    ];
+    for (args, mend) in cases {
+        desk.run(&[&["render", "lit.txt", "-o", "a.ppm"], args].concat())
+            .fails_with(&[mend]);
+    }
+    for (path, same) in [("20.0", true), ("1e6", true), ("1e300", true), ("0", false)] {
+        let args = ["render", "lit.txt", "--backend", "cpu", "-o", "-", "-q"];
+        let ran = desk
+            .run(&[&args[..], &["--max-path", path]].concat())
+            .ends(0);
+        assert_eq!(same, ran.stdout == picture, "{path}");
+    }
+    assert_eq!(desk.names(), ["lit.txt", "room.txt"]);
+}
+
+#[test]
+fn reports_say_what_of_the_light_changes_the_bytes() {
+    let (desk, _) = rendered(&[]);
+    let report = |scene: &str, options: &[&str]| -> serde_json::Value {
+        let args = ["render", scene, "--backend", "cpu", "--json", "-o", "a.png"];
+        let ran = desk.run(&[&args[..], options].concat()).ends(0);
+        serde_json::from_slice(&ran.stdout).unwrap()
+    };
+    let in_png = |text: &str| {
+        let png = desk.read("a.png");
+        png.windows(text.len()).any(|part| part == text.as_bytes())
+    };
+    let json = report("lit.txt", &["--samples", "2", "--max-path", "7.5"]);
+    assert_eq!(
+        (&json["samples"], &json["jitter"]),
+        (&2.into(), &"hash".into())
+    );
+    assert_eq!(json["max_path"], 7.5);
+    assert!(in_png("plumb:samples\u{0}2") && in_png("plumb:jitter\u{0}hash"));
+    assert!(in_png("plumb:max-path\u{0}7.5") && !in_png("max-rays"));
+    // What has no say in the picture is not told.
+    let json = report("room.txt", &["--jitter", "course"]);
+    let nothing = &serde_json::Value::Null;
+    assert_eq!((&json["jitter"], &json["max_path"]), (nothing, nothing));
+    assert!(!in_png("plumb:jitter") && !in_png("plumb:max-path"));
 }

@@ -1,0 +1,290 @@
+//! Scenes made of ingredients, each of which a shader needs something for.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
+use plumb::render::{Precision, Settings, Spread};
+use plumb::scene::{
+    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Texture, TextureMode,
+};
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::pack::Packed;
+
+/// Something that a scene may have and a shader then needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ingredient {
+    Plane,
+    PlaneAcrossTheScreen,
+    Tiled,
+    Pplane(u32),
+    SmallSphere,
+    WideSphere,
+    SmallPsphere(u32),
+    WidePsphere(u32),
+    Coplanar,
+    Fast,
+    ManyPlanes,
+    ManySpheres,
+    Values,
+    Rectangle,
+    TiledAlong,
+    Texplane(TextureMode),
+    Lamp,
+    Spotlight,
+    LampInFloor,
+    Mirror,
+    Glass,
+    Glint,
+    Samples,
+    CourseSamples,
+}
+
+use Ingredient::*;
+
+pub(super) fn ingredients() -> Vec<Ingredient> {
+    let mut all = vec![
+        Plane,
+        PlaneAcrossTheScreen,
+        Tiled,
+        SmallSphere,
+        WideSphere,
+        Coplanar,
+        Fast,
+        ManyPlanes,
+        ManySpheres,
+        Values,
+        Rectangle,
+        TiledAlong,
+        Texplane(TextureMode::Fit),
+        Texplane(TextureMode::Tile),
+        Lamp,
+        Spotlight,
+        LampInFloor,
+        Mirror,
+        Glass,
+        Glint,
+        Samples,
+        CourseSamples,
+    ];
+    all.extend((0..PPLANE_SHADERS).map(Pplane));
+    all.extend((0..PSPHERE_SHADERS).flat_map(|n| [SmallPsphere(n), WidePsphere(n)]));
+    all
+}
+
+fn plane(normal: DVec3, point: DVec3, surface: Surface) -> Object {
+    let shape = Shape::Plane {
+        normal,
+        point,
+        extent: Extent::Unbounded,
+    };
+    Object {
+        name: "p".into(),
+        material: 0,
+        shape,
+        surface,
+    }
+}
+
+fn sphere(center: DVec3, radius: f64, surface: Surface) -> Object {
+    Object {
+        name: "s".into(),
+        material: 0,
+        shape: Shape::Sphere { center, radius },
+        surface,
+    }
+}
+
+pub(super) fn objects(ingredient: Ingredient) -> Vec<Object> {
+    let floor = |surface| plane(DVec3::Y, DVec3::new(0.0, -1.0, 0.0), surface);
+    let small = |surface| sphere(DVec3::new(4.0, 3.0, -9.0), 1.0, surface);
+    let wide = |surface| sphere(DVec3::new(4.0, -30.0, -9.0), 29.0, surface);
+    match ingredient {
+        Plane => vec![floor(Surface::Plain)],
+        PlaneAcrossTheScreen => vec![plane(
+            DVec3::new(3.0, 0.0, 1.0),
+            DVec3::new(2.0, 0.0, 0.0),
+            Surface::Plain,
+        )],
+        Tiled => vec![floor(Surface::Tiled {
+            dimension: DVec2::new(2.0, 3.0),
+            altmaterial: 0,
+            xdir: None,
+        })],
+        Pplane(shader) => vec![floor(Surface::Procedural { shader })],
+        SmallSphere => vec![small(Surface::Plain)],
+        WideSphere => vec![wide(Surface::Plain)],
+        // Of equal spheres the first hides the others.
+        SmallPsphere(shader) => vec![sphere(
+            DVec3::new(3.0, 2.0, -8.0),
+            1.0,
+            Surface::Procedural { shader },
+        )],
+        WidePsphere(shader) => vec![sphere(
+            DVec3::new(4.0, -30.0, -9.0),
+            28.0,
+            Surface::Procedural { shader },
+        )],
+        ManyPlanes => (1..100)
+            .map(|i| {
+                plane(
+                    DVec3::Z,
+                    DVec3::new(0.0, 0.0, -f64::from(i)),
+                    Surface::Plain,
+                )
+            })
+            .collect(),
+        ManySpheres => (0..1000)
+            .map(|i| {
+                sphere(
+                    DVec3::new(f64::from(i % 8), f64::from(i / 8 % 6), -9.0 - f64::from(i)),
+                    0.3,
+                    Surface::Plain,
+                )
+            })
+            .collect(),
+        Rectangle => vec![rectangle(Surface::Plain)],
+        Coplanar => {
+            let wall = plane(DVec3::Z, DVec3::new(0.0, 0.0, -4.0), Surface::Plain);
+            vec![rectangle(Surface::Plain), wall]
+        }
+        TiledAlong => {
+            vec![floor(Surface::Tiled {
+                dimension: DVec2::ONE,
+                altmaterial: 0,
+                xdir: Some(DVec3::new(1.0, 0.0, 1.0)),
+            })]
+        }
+        Texplane(mode) => vec![rectangle(Surface::Textured { texture: 0, mode })],
+        Mirror => vec![of_material(1, floor(Surface::Plain))],
+        Glass => vec![of_material(2, small(Surface::Plain))],
+        Glint => vec![of_material(3, small(Surface::Plain))],
+        LampInFloor => vec![floor(Surface::Plain)],
+        Values | Fast | Lamp | Spotlight | Samples | CourseSamples => vec![],
+    }
+}
+
+fn of_material(material: usize, object: Object) -> Object {
+    Object { material, ..object }
+}
+
+fn rectangle(surface: Surface) -> Object {
+    let extent = Extent::Rectangle(Rectangle {
+        xdir: DVec3::X,
+        dimensions: DVec2::new(2.0, 3.0),
+    });
+    let shape = Shape::Plane {
+        normal: DVec3::Z,
+        point: DVec3::new(1.0, 1.0, -4.0),
+        extent,
+    };
+    Object {
+        name: "r".into(),
+        material: 0,
+        shape,
+        surface,
+    }
+}
+
+fn lights(ingredient: Ingredient) -> Vec<Light> {
+    let light = |y, cone| Light {
+        name: "l".into(),
+        location: DVec3::new(4.0, y, 2.0),
+        emissivity: DVec3::ONE,
+        cone,
+    };
+    match ingredient {
+        // What materials do is seen by light alone.
+        Lamp | Mirror | Glass | Glint => vec![light(6.0, None)],
+        LampInFloor => vec![light(-1.0, None)],
+        Spotlight => vec![light(
+            6.0,
+            Some(Cone {
+                point: DVec3::ZERO,
+                theta: 20.0,
+            }),
+        )],
+        _ => vec![],
+    }
+}
+
+fn materials() -> Vec<Material> {
+    let material = || Material {
+        name: "m".into(),
+        ambient: DVec3::ONE,
+        diffuse: DVec3::ONE,
+        ..Material::default()
+    };
+    let specular = DVec3::splat(0.5);
+    vec![
+        material(),
+        Material {
+            specular,
+            ..material()
+        },
+        Material {
+            transparency: 0.5,
+            ..material()
+        },
+        Material {
+            specular,
+            shininess: 20.0,
+            ..material()
+        },
+    ]
+}
+
+pub(super) fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
+    let (packed, features) = packed(chosen);
+    (compose(&packed, &features, Entry::Picture), features)
+}
+
+pub(super) fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
+    let texels = Texels {
+        width: 2,
+        height: 1,
+        rgb: vec![0; 6],
+    };
+    let scene = Scene {
+        camera: Camera {
+            name: "c".into(),
+            pixeldim: [64, 48],
+            worlddim: DVec2::new(8.0, 6.0),
+            viewpoint: DVec3::new(4.0, 3.0, 6.0),
+        },
+        materials: materials(),
+        objects: chosen.iter().flat_map(|i| objects(*i)).collect(),
+        lights: chosen.iter().flat_map(|i| lights(*i)).collect(),
+        textures: vec![Texture {
+            name: "t".into(),
+            filename: "t.ppm".into(),
+            path: "t.ppm".into(),
+            texels: Arc::new(texels),
+        }],
+    };
+    let has = |ingredient| chosen.contains(&ingredient);
+    let settings = Settings {
+        values: has(Values),
+        samples: if has(Samples) || has(CourseSamples) {
+            16
+        } else {
+            1
+        },
+        jitter: if has(CourseSamples) {
+            Spread::Course
+        } else {
+            Spread::Hash
+        },
+        precision: if has(Fast) {
+            Precision::Fast
+        } else {
+            Precision::Certified
+        },
+        ..Settings::default()
+    };
+    let packed = Packed::new(&scene, &settings);
+    let features = FeatureSet::new(&packed, &settings, 8);
+    (packed, features)
+}

@@ -1,0 +1,149 @@
+//! Offsets and sizes of the packed records are those that naga computes for the WGSL structs.
+
+use plumb::shader::binding::BINDINGS;
+use plumb::shader::record::{Layout, Record as _};
+use plumb::shader::records::{CameraNumbers, Job, LAYOUTS};
+
+use super::*;
+
+/// Struct members by name with their offsets, and the array stride or span of the struct.
+fn wgsl_struct(module: &naga::Module, name: &str) -> Option<(Vec<(String, usize)>, usize)> {
+    let (_, ty) = module
+        .types
+        .iter()
+        .find(|(_, ty)| ty.name.as_deref() == Some(name))?;
+    let naga::TypeInner::Struct { members, span } = &ty.inner else {
+        panic!("{name} is no struct")
+    };
+    let offsets = members
+        .iter()
+        .map(|m| (m.name.clone().unwrap(), m.offset as usize))
+        .collect();
+    Some((offsets, *span as usize))
+}
+
+/// Modules that have all the structs.
+fn modules() -> Vec<naga::Module> {
+    let all = ingredients();
+    let dark: Vec<_> = all
+        .iter()
+        .copied()
+        .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
+        .collect();
+    let (packed, features) = packed(&[Plane, Lamp, Fast]);
+    let moving = compose(&packed, &features.while_moving(), Entry::Picture);
+    [
+        composed(&all).0,
+        composed(&dark).0,
+        composed(&[Plane, Samples]).0,
+        composed(&[SmallSphere, SmallPsphere(0), ManyPlanes]).0,
+        moving,
+    ]
+    .iter()
+    .map(|wgsl| assert_valid(wgsl, "structs"))
+    .collect()
+}
+
+fn ours(layout: &Layout) -> (Vec<(String, usize)>, usize) {
+    let members = layout
+        .members()
+        .map(|field| (field.name.to_owned(), field.offset));
+    (members.collect(), layout.size)
+}
+
+#[test]
+fn records_are_laid_out_as_naga_says() {
+    let modules = modules();
+    for layout in LAYOUTS {
+        // The camera is no struct of its own: see below.
+        if layout.name == "CameraNumbers" {
+            continue;
+        }
+        let found: Vec<_> = modules
+            .iter()
+            .filter_map(|module| wgsl_struct(module, layout.wgsl))
+            .collect();
+        assert!(!found.is_empty(), "no struct {}", layout.wgsl);
+        // Two records may have the same name in the shaders of different scenes.
+        let named: Vec<_> = LAYOUTS
+            .iter()
+            .filter(|other| other.wgsl == layout.wgsl)
+            .map(ours)
+            .collect();
+        assert!(found.contains(&ours(layout)), "{}: {found:?}", layout.name);
+        for found in found
+            .iter()
+            .filter(|(members, _)| members.len() == ours(layout).0.len())
+        {
+            assert!(named.contains(found), "{}: {found:?}", layout.wgsl);
+        }
+    }
+}
+
+/// What the table says of bindings is what the shaders declare.
+#[test]
+fn bindings_are_as_the_table_says() {
+    let all = ingredients();
+    let mut scenes = vec![all.clone()];
+    for ingredient in all {
+        scenes.push(vec![ingredient]);
+        scenes.push(vec![ingredient, Plane, Samples, Pplane(0)]);
+        scenes.push(vec![ingredient, ManyPlanes]);
+        scenes.push(vec![ingredient, ManyPlanes, Lamp, Mirror]);
+    }
+    let mut seen = BTreeSet::new();
+    for ingredients in scenes {
+        let (wgsl, set) = composed(&ingredients);
+        let features = set.features();
+        let module = assert_valid(&wgsl, "bindings");
+        let declared: BTreeSet<(u32, &str)> = module
+            .global_variables
+            .iter()
+            .filter_map(|(_, variable)| {
+                let binding = variable.binding.as_ref()?;
+                Some((binding.binding, variable.name.as_deref()?))
+            })
+            .collect();
+        let holding: Vec<usize> = (0..BINDINGS.len())
+            .filter(|&i| (BINDINGS[i].holds)(&features))
+            .collect();
+        let named = |&i: &usize| (BINDINGS[i].number, BINDINGS[i].name);
+        // No number twice.
+        assert_eq!(holding.len(), declared.len(), "{ingredients:?}");
+        assert_eq!(
+            declared,
+            holding.iter().map(named).collect(),
+            "{ingredients:?}"
+        );
+        seen.extend(holding);
+    }
+    assert_eq!(seen.len(), BINDINGS.len(), "{seen:?}");
+}
+
+#[test]
+fn a_camera_that_moves_stands_behind_the_job() {
+    let (packed, features) = packed(&[Plane, Lamp, Fast]);
+    let wgsl = compose(&packed, &features.while_moving(), Entry::Picture);
+    let (members, span) = wgsl_struct(&assert_valid(&wgsl, "moving"), "Job").unwrap();
+    let (job, camera) = (Job::LAYOUT, CameraNumbers::LAYOUT);
+    let behind = camera
+        .members()
+        .map(|field| (format!("camera_{}", field.name), job.size + field.offset));
+    assert_eq!(members[4..], behind.collect::<Vec<_>>());
+    assert_eq!(span, job.size + camera.size);
+}
+
+#[test]
+fn a_shifted_field_is_noticed() {
+    let wgsl = composed(&[Plane, ManyPlanes]).0.replace(
+        "    inverse: vec3f,\n",
+        "    extra: u32,\n    inverse: vec3f,\n",
+    );
+    let module = naga::front::wgsl::parse_str(&wgsl).unwrap();
+    let found = wgsl_struct(&module, "Plane").unwrap();
+    let plane = LAYOUTS
+        .iter()
+        .find(|layout| layout.name == "Plane")
+        .unwrap();
+    assert_ne!(found, ours(plane));
+}

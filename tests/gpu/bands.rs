@@ -1,0 +1,199 @@
+//! How a picture is cut into pieces changes no byte of it: bands of different heights, rows rendered alone, one thread or
+//! many, the CPU or the GPU. Needs an adapter, and fails without one.
+
+use std::ops::Range;
+
+use plumb::certify::Stage;
+use plumb::render::{Backend, Band, Precision, Report, Settings, Spread, render};
+use plumb::scene::Scene;
+
+use crate::common;
+
+/// Scenes of different kinds, some of whose pixels are hard.
+const SCENES: &[&str] = &[
+    "notes/walls.txt",
+    "gallery/spheres_over_tiles.txt",
+    "gallery/procedural_all.txt",
+    "hard/tied_lines.txt",
+    "lit/shadows_balls.txt",
+    "lit/mirror_and_glass.txt",
+];
+
+fn scene(name: &str) -> Scene {
+    let mut scene = common::read(&common::scenes().join(name));
+    scene.camera.pixeldim = [93, 71];
+    scene
+}
+
+fn bands(scene: &Scene, settings: &Settings) -> (Vec<Band>, Report) {
+    let mut bands = Vec::new();
+    let report = render(scene, settings, &mut |band| {
+        bands.push(band.clone());
+        Ok(())
+    });
+    (bands, report.unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn rgb(bands: &[Band]) -> Vec<u8> {
+    bands.iter().flat_map(|band| band.rgb.clone()).collect()
+}
+
+fn settings(backend: Backend, band_rows: Option<u32>) -> Settings {
+    Settings {
+        backend,
+        band_rows,
+        ..Settings::default()
+    }
+}
+
+#[test]
+fn bands_have_the_height_that_was_asked_for() {
+    let scene = scene("notes/walls.txt");
+    for backend in [Backend::Gpu, Backend::Cpu] {
+        for height in [1, 7, 71, 500] {
+            let (bands, report) = bands(&scene, &settings(backend, Some(height)));
+            let mut top = 71;
+            for band in &bands {
+                assert_eq!(band.rows.end, top);
+                assert_eq!(band.rows.len() as u32, height.min(top));
+                top = band.rows.start;
+            }
+            assert_eq!(top, 0);
+            assert_eq!(report.bands as usize, bands.len());
+        }
+    }
+}
+
+/// Certified, a picture is the same whoever renders it.
+#[test]
+fn the_gpu_and_the_cpu_render_the_same() {
+    for name in SCENES {
+        let scene = scene(name);
+        for (samples, jitter) in [(1, Spread::Hash), (3, Spread::Hash), (3, Spread::Course)] {
+            let on = |backend| Settings {
+                samples,
+                jitter,
+                ..settings(backend, None)
+            };
+            let (gpu, report) = bands(&scene, &on(Backend::Gpu));
+            assert_eq!(report.revoked, None, "{name}, {samples} samples");
+            let (cpu, _) = bands(&scene, &on(Backend::Cpu));
+            assert!(
+                rgb(&gpu) == rgb(&cpu),
+                "{name}, {samples} samples, {jitter:?}"
+            );
+        }
+    }
+}
+
+/// Nor does it matter in which pieces, or on how many threads.
+#[test]
+fn pieces_are_pieces_of_the_whole() {
+    for name in SCENES {
+        let scene = scene(name);
+        for (samples, jitter) in [(1, Spread::Hash), (3, Spread::Hash), (3, Spread::Course)] {
+            for backend in [Backend::Gpu, Backend::Cpu] {
+                let mut whole = None;
+                for (band_rows, threads) in [
+                    (None, None),
+                    (Some(1), Some(1)),
+                    (Some(16), Some(3)),
+                    (Some(29), None),
+                ] {
+                    let all = Settings {
+                        threads,
+                        samples,
+                        jitter,
+                        ..settings(backend, band_rows)
+                    };
+                    let part = |rows: Range<u32>| Settings {
+                        rows: Some(rows),
+                        ..all.clone()
+                    };
+                    let picture = rgb(&bands(&scene, &all).0);
+                    let whole = whole.get_or_insert_with(|| picture.clone());
+                    let what = format!("{name}, {samples} samples, {backend:?}, {band_rows:?}");
+                    assert!(picture == *whole, "{what}");
+                    let pieces: Vec<u8> = [40..71, 39..40, 0..39]
+                        .into_iter()
+                        .flat_map(|rows| rgb(&bands(&scene, &part(rows)).0))
+                        .collect();
+                    assert!(pieces == *whole, "{what}: rows alone");
+                }
+            }
+        }
+    }
+}
+
+/// Raw f32 depends on no band either.
+#[test]
+fn fast_pictures_have_no_seams() {
+    let scene = scene("lit/mirror_and_glass.txt");
+    let fast = |band_rows| Settings {
+        precision: Precision::Fast,
+        ..settings(Backend::Gpu, band_rows)
+    };
+    let whole = rgb(&bands(&scene, &fast(None)).0);
+    for height in [1, 13, 70] {
+        assert!(rgb(&bands(&scene, &fast(Some(height))).0) == whole);
+    }
+}
+
+/// The values of a certified picture are computed on the CPU; the GPU alone cannot have them.
+#[test]
+fn certified_values_are_the_cpus() {
+    let scene = scene("notes/walls.txt");
+    let values = |backend, precision| Settings {
+        values: true,
+        precision,
+        ..settings(backend, None)
+    };
+    let (auto, report) = bands(&scene, &values(Backend::Auto, Precision::Certified));
+    assert_eq!(report.backend, Backend::Cpu);
+    assert!(report.fallback.unwrap().contains("--precision fast"));
+    assert!(auto[0].values.is_some());
+    let (fast, report) = bands(&scene, &values(Backend::Gpu, Precision::Fast));
+    assert_eq!(report.backend, Backend::Gpu);
+    assert!(fast[0].values.is_some());
+    let refused = render(
+        &scene,
+        &values(Backend::Gpu, Precision::Certified),
+        &mut |_| Ok(()),
+    );
+    let error = refused.unwrap_err().to_string();
+    assert!(error.contains("--precision fast"), "{error}");
+}
+
+/// Every pixel is counted once, and its verdict is the stage that it was counted for.
+#[test]
+fn verdicts_and_counts_agree() {
+    for name in SCENES {
+        let scene = scene(name);
+        for backend in [Backend::Gpu, Backend::Cpu] {
+            let wanted = Settings {
+                verdicts: true,
+                ..settings(backend, Some(10))
+            };
+            let (bands, report) = bands(&scene, &wanted);
+            let verdicts: Vec<Stage> = bands
+                .iter()
+                .flat_map(|band| band.verdicts.clone().unwrap())
+                .collect();
+            assert_eq!(verdicts.len(), 93 * 71);
+            assert_eq!(report.pixels, 93 * 71);
+            for stage in Stage::ALL {
+                let count = verdicts.iter().filter(|verdict| **verdict == stage).count();
+                assert_eq!(
+                    report.decided.count(stage),
+                    count as u64,
+                    "{name}: {stage:?}"
+                );
+            }
+            let by_gpu = report.decided.count(Stage::Gpu);
+            match report.backend {
+                Backend::Gpu => assert_eq!(report.refined, 93 * 71 - by_gpu),
+                _ => assert_eq!((report.refined, by_gpu), (0, 0)),
+            }
+        }
+    }
+}

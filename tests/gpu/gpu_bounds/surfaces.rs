@@ -1,0 +1,302 @@
+//! Bounds at a hit point: indices of tiles and blocks, the colour wheel, the glint's power.
+
+use glam::DVec3;
+use plumb::gpu::device::Gpu;
+use plumb::prepare::extent::rows;
+use plumb::real::V3;
+use plumb::scene::{Object, Shape, Surface};
+use plumb::shader::bounds::up;
+
+use super::support::{Rng, Seen, rounded, run};
+use super::world::{UNIT, VIEWPOINT, World};
+
+/// The text is there for the entry point of the test to repeat it: else the test tests nothing.
+fn assert_has(wgsl: &str, lines: &[&str]) {
+    for line in lines {
+        assert!(wgsl.contains(line), "no longer in the shader: {line}");
+    }
+}
+
+/// A point as the shader has it, and truly, from the viewpoint: every other one is exact, and they may be off by as much as
+/// they are said to be.
+fn point(rng: &mut Rng, items: &mut Vec<f32>, number: usize) -> DVec3 {
+    let size = rng.log(-1.0, 3.0);
+    let (told, near) = rounded(rng.within(size));
+    let way = rng.unit();
+    let truth = near
+        + way
+            * if number.is_multiple_of(2) {
+                0.0
+            } else {
+                rng.log(-7.0, -2.0)
+            };
+    items.extend(told);
+    items.push(up((near - truth).length()));
+    truth
+}
+
+const POINT: &str = "
+    var point: Point;
+    point.position = items[i].xyz;
+    point.error = items[i].w;
+    point.size = abs(point.position.x) + abs(point.position.y) + abs(point.position.z);
+";
+
+/// Objects whose surface is modulated, by the number of their record.
+fn modulated(world: &World, code: u32) -> Vec<&Object> {
+    let objects = &world.packed.lit.as_ref().unwrap().objects;
+    let mut found: Vec<(u32, &Object)> = objects
+        .iter()
+        .zip(&world.scene.objects)
+        .filter(|(o, _)| o.kind & 255 == code)
+        .map(|(o, object)| (o.kind >> 8, object))
+        .collect();
+    found.sort_by_key(|(record, _)| *record);
+    found.into_iter().map(|(_, object)| object).collect()
+}
+
+/// The difference modulo `period`, in ±period/2. (The host folds even parts of an index away.)
+fn apart(found: f64, truth: f64, period: f64) -> f64 {
+    let d = found - truth;
+    (d - period * (d / period).round()).abs()
+}
+
+/// Notes an index that may decide something: bounds from ½ up never do.
+fn index(seen: &mut Seen, off: f64, bound: f64) {
+    if bound < 0.5 {
+        seen.error(off, bound);
+    } else {
+        seen.decision(false, true, false);
+    }
+}
+
+/// Indices of tiles.
+pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen; 2] {
+    assert_has(
+        wgsl,
+        &[
+            "let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);",
+            "var clear = abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors);",
+        ],
+    );
+    let objects = modulated(world, 1);
+    // An odd number, so that every record gets points of both kinds.
+    let n = (objects.len() - 1) | 1;
+    let (mut rng, mut items) = (Rng(6), Vec::new());
+    let points: Vec<_> = (0..count).map(|i| point(&mut rng, &mut items, i)).collect();
+    let body = format!(
+        "{POINT}
+    let plane = tiled_planes[i % {n}u];
+    let position = point.position;
+    let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
+    answers[i] = vec4f(index, plane.spread * index_error(point) + plane.errors);"
+    );
+    let records = &world.packed.tiled_planes;
+    assert_eq!(records.len(), objects.len());
+    let inputs = [(8, bytemuck::cast_slice(records))];
+    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 1);
+    let mut seen = [
+        "index of a tile, exact point",
+        "index of a tile, point is off",
+    ]
+    .map(Seen::new);
+    for (i, (answer, p)) in answers.iter().zip(points).enumerate() {
+        let (
+            Surface::Tiled {
+                dimension, xdir, ..
+            },
+            Shape::Plane { normal, .. },
+        ) = (objects[i % n].surface, &objects[i % n].shape)
+        else {
+            panic!("no tiles")
+        };
+        let hit = p * UNIT + VIEWPOINT;
+        let truth = match xdir {
+            None => [
+                (hit.x + 10_000.0) / dimension.x,
+                (hit.z + 10_000.0) / dimension.y,
+            ],
+            Some(xdir) => {
+                let rows: [V3<f64>; 2] = rows(*normal, xdir);
+                [
+                    (rows[0].approx().dot(hit) + 10_000.0) / dimension.x,
+                    (rows[1].approx().dot(hit) + 10_000.0) / dimension.y,
+                ]
+            }
+        };
+        let record = &records[i % n];
+        let rows = [record.row_0, record.row_1];
+        let answer = answer.map(f64::from);
+        for k in 0..2 {
+            // Along the plane's own coordinate there is nothing to decide.
+            if rows[k] != [0.0; 3] {
+                index(
+                    &mut seen[i % 2],
+                    apart(answer[k], truth[k], 1.0),
+                    answer[k + 2],
+                );
+            }
+        }
+    }
+    seen
+}
+
+/// Indices of blocks, and the components of H − point.
+pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [[Seen; 2]; 2] {
+    assert_has(
+        wgsl,
+        &[
+            "let index = at.point.position * at.plane.per_unit + at.plane.fraction;",
+            "var clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);",
+        ],
+    );
+    let objects = modulated(world, 64 + 2);
+    // An odd number, so that every record gets points of both kinds.
+    let n = (objects.len() - 1) | 1;
+    let (mut rng, mut items) = (Rng(7), Vec::new());
+    let points: Vec<_> = (0..count).map(|i| point(&mut rng, &mut items, i)).collect();
+    let body = format!(
+        "{POINT}
+    let at = PlanePoint(point, vec3f(1.0), pplanes[i % {n}u]);
+    let index = at.point.position * at.plane.per_unit + at.plane.fraction;
+    let bound = abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error;
+    answers[3u * i] = vec4f(index, 0.0);
+    answers[3u * i + 1u] = vec4f(bound, 0.0);
+    answers[3u * i + 2u] = vec4f(pplane_from_point(at), 0.0);"
+    );
+    let records = &world.packed.pplanes;
+    assert_eq!(records.len(), objects.len());
+    let inputs = [(9, bytemuck::cast_slice(records))];
+    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 3);
+    let mut seen = [
+        [
+            "index of a block, exact point",
+            "index of a block, point is off",
+        ],
+        [
+            "pplane_from_point, exact point",
+            "pplane_from_point, point is off",
+        ],
+    ]
+    .map(|names| names.map(Seen::new));
+    for (i, (answer, p)) in answers.chunks(3).zip(points).enumerate() {
+        let record = &records[i % n];
+        let hit = p * UNIT + VIEWPOINT;
+        let Shape::Plane { point, .. } = &objects[i % n].shape else {
+            panic!("no plane")
+        };
+        for k in 0..3 {
+            if record.per_unit[k] == 0.0 {
+                continue;
+            }
+            let truth = 2.0 * hit[k] + 1000.0 - f64::from(record.parity[k]);
+            let off = apart(f64::from(answer[0][k]), truth, 2.0);
+            index(&mut seen[0][i % 2], off, f64::from(answer[1][k]));
+            if k < 2 {
+                let off = f64::from(answer[2][k]) - (hit[k] - point[k]);
+                seen[1][i % 2].error(off.abs(), f64::from(answer[2][2]));
+            }
+        }
+    }
+    seen
+}
+
+/// The colour wheel, at components that are off by as much as they may be, or are exact.
+pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
+    let (mut rng, mut items) = (Rng(8), Vec::new());
+    let truth: Vec<_> = (0..count)
+        .map(|i| {
+            let (size, angle) = (rng.log(-6.0, 4.0), rng.uniform(0.0, std::f64::consts::TAU));
+            let angle = if rng.chance(0.2) {
+                // Where a channel is 0, or components are alike.
+                f64::from(rng.below(24) as u32) * std::f64::consts::PI / 12.0 + rng.log(-8.0, -2.0)
+            } else {
+                angle
+            };
+            let told = [size * angle.cos(), size * angle.sin()].map(|x| x as f32);
+            let error = if i % 2 == 0 {
+                0.0
+            } else {
+                (size * rng.log(-7.0, -1.0)) as f32
+            };
+            items.extend([told[0], told[1], error, 0.0]);
+            told.map(|x| f64::from(x) + rng.sign() * f64::from(error))
+        })
+        .collect();
+    let body = "
+    let shade = color_wheel(items[i].x, items[i].y, items[i].z);
+    answers[2u * i] = vec4f(shade.color, select(0.0, 1.0, doubt));
+    answers[2u * i + 1u] = vec4f(shade.error, 0.0);";
+    let answers = run(gpu, wgsl, body, &items, &[], count, 2);
+    let mut seen = ["color_wheel, exact place", "color_wheel, place is off"].map(Seen::new);
+    for (i, (answer, [x, y])) in answers.chunks(2).zip(truth).enumerate() {
+        let seen = &mut seen[i % 2];
+        if answer[0][3] == 1.0 {
+            seen.decision(false, true, false);
+            continue;
+        }
+        let square = x * x + y * y;
+        let (cosine, sine) = ((x - y) * (x + y) / square, 2.0 * x * y / square);
+        let root = 0.75_f64.sqrt();
+        let colors = [
+            1.0 + cosine,
+            1.0 - 0.5 * cosine - root * sine,
+            1.0 - 0.5 * cosine + root * sine,
+        ];
+        for k in 0..3 {
+            seen.error(
+                (f64::from(answer[0][k]) - colors[k]).abs(),
+                f64::from(answer[1][k]),
+            );
+        }
+    }
+    seen
+}
+
+/// The glint's power of a cosine that is off by as much as it may be, or nearly exact.
+pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
+    assert_has(
+        wgsl,
+        &[
+            "let upper = min(cosine + cosine_error, 1.0);",
+            "shade.error += glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);",
+        ],
+    );
+    let (mut rng, mut items) = (Rng(9), Vec::new());
+    let truth: Vec<_> = (0..count)
+        .map(|i| {
+            let n = rng.log(0.0, 3.0).min(1023.0) as u32;
+            let cosine = if rng.chance(0.5) {
+                1.0 - rng.log(-8.0, 0.0)
+            } else {
+                rng.uniform(-0.01, 1.0)
+            } as f32;
+            let error = rng.log(-7.0, -2.0) as f32 * if i % 2 == 0 { 0.0 } else { 1.0 };
+            items.extend([cosine, error, f32::from_bits(n), 0.0]);
+            let way = rng.sign();
+            let cosine = f64::from(cosine) + way * f64::from(error);
+            cosine.clamp(0.0, 1.0).powi(n as i32)
+        })
+        .collect();
+    let body = "
+    let cosine = items[i].x;
+    let cosine_error = items[i].y;
+    let whole = bitcast<u32>(items[i].z);
+    let upper = min(cosine + cosine_error, 1.0);
+    let glint = power(upper, whole);
+    let n = f32(whole);
+    let error = glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
+    answers[i] = vec4f(glint, error, select(0.0, 1.0, cosine > -cosine_error), 0.0);";
+    let answers = run(gpu, wgsl, body, &items, &[], count, 1);
+    let mut seen = ["power, exact cosine", "power, cosine is off"].map(Seen::new);
+    for (i, (answer, truth)) in answers.iter().zip(truth).enumerate() {
+        let [glint, error, counts, _] = answer.map(f64::from);
+        if counts == 0.0 {
+            seen[i % 2].must(truth == 0.0);
+        } else if truth > 1e-30 {
+            // What is smaller may be flushed, and is next to nothing beside a byte's step.
+            seen[i % 2].error((glint - truth).abs(), error);
+        }
+    }
+    seen
+}

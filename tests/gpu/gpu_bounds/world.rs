@@ -1,0 +1,409 @@
+//! Running bounds: rays from anywhere against planes, rectangles and spheres.
+
+use glam::{DVec2, DVec3};
+use plumb::gpu::device::Gpu;
+use plumb::render::Settings;
+use plumb::scene::{Camera, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface};
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::pack::Packed;
+
+use super::support::{Rng, Seen, TrueBeam, run};
+
+pub(crate) const VIEWPOINT: DVec3 = DVec3::new(3.7, 2.9, 6.3);
+/// Lengths on the GPU are in units of the power of two next below the viewpoint's z.
+pub(crate) const UNIT: f64 = 4.0;
+
+pub(crate) fn object(shape: Shape, surface: Surface, material: usize) -> Object {
+    Object {
+        name: "o".into(),
+        material,
+        shape,
+        surface,
+    }
+}
+
+/// Materials: plain, mirror, glass, with a glint.
+pub(crate) fn materials() -> Vec<Material> {
+    let plain = Material {
+        name: "m".into(),
+        ambient: DVec3::new(0.9, 0.7, 0.4),
+        diffuse: DVec3::new(0.4, 0.8, 0.6),
+        ..Material::default()
+    };
+    let specular = DVec3::splat(0.5);
+    vec![
+        plain.clone(),
+        Material {
+            specular,
+            ..plain.clone()
+        },
+        Material {
+            transparency: 0.5,
+            ..plain.clone()
+        },
+        Material {
+            specular,
+            shininess: 20.0,
+            ..plain
+        },
+    ]
+}
+
+pub(crate) fn camera(pixeldim: [u32; 2]) -> Camera {
+    Camera {
+        name: "c".into(),
+        pixeldim,
+        worlddim: DVec2::new(8.0, 6.0),
+        viewpoint: VIEWPOINT,
+    }
+}
+
+/// A lit scene of many planes, rectangles and spheres of all sizes, plain, tiled and procedural.
+pub(crate) fn scene(rng: &mut Rng, planes: usize, spheres: usize) -> Scene {
+    let mut objects = Vec::new();
+    for i in 0..planes {
+        let axis = rng.chance(0.2);
+        let normal = if axis {
+            DVec3::AXES[rng.below(3)] * rng.sign() * rng.log(-1.0, 1.0)
+        } else {
+            rng.unit() * rng.log(-2.0, 2.0)
+        };
+        let size = rng.log(-1.0, 2.0);
+        let mut point = VIEWPOINT + rng.within(size);
+        // A wall before the screen is none.
+        point.z = point.z.min(-0.5 * size.min(1.0));
+        let across = normal.cross(rng.unit());
+        let extent = if rng.chance(0.6) {
+            Extent::Rectangle(Rectangle {
+                xdir: across + normal * rng.uniform(0.0, 0.5),
+                dimensions: DVec2::new(rng.log(-1.5, 1.5), rng.log(-1.5, 1.5)),
+            })
+        } else {
+            Extent::Unbounded
+        };
+        let surface = match i % 4 {
+            0 => Surface::Tiled {
+                dimension: DVec2::new(rng.log(-1.0, 1.0), rng.log(-1.0, 1.0)),
+                altmaterial: 1,
+                xdir: rng.chance(0.5).then_some(across),
+            },
+            1 => Surface::Procedural { shader: 2 },
+            _ => Surface::Plain,
+        };
+        let shape = Shape::Plane {
+            normal,
+            point,
+            extent,
+        };
+        objects.push(object(shape, surface, i % 4));
+    }
+    for i in 0..spheres {
+        let (center, radius) = (VIEWPOINT + rng.within(100.0), rng.log(-2.0, 2.0));
+        let surface = match i % 2 {
+            0 => Surface::Procedural { shader: 0 },
+            _ => Surface::Plain,
+        };
+        objects.push(object(Shape::Sphere { center, radius }, surface, i % 4));
+    }
+    let light = Light {
+        name: "l".into(),
+        location: DVec3::new(4.1, 6.3, 2.2),
+        emissivity: DVec3::ONE,
+        cone: None,
+    };
+    Scene {
+        camera: camera([64, 48]),
+        materials: materials(),
+        objects,
+        lights: vec![light],
+        textures: vec![],
+    }
+}
+
+/// A scene with its shader and records.
+pub(crate) struct World {
+    pub(crate) scene: Scene,
+    pub(crate) packed: Packed,
+    pub(crate) wgsl: String,
+}
+
+impl World {
+    pub(crate) fn of(scene: Scene, settings: &Settings) -> Self {
+        let packed = Packed::new(&scene, settings);
+        assert_eq!(packed.unprovable, None);
+        let wgsl = compose(
+            &packed,
+            &FeatureSet::new(&packed, settings, 8),
+            Entry::Picture,
+        );
+        Self {
+            scene,
+            packed,
+            wgsl,
+        }
+    }
+
+    pub(crate) fn many() -> Self {
+        let scene = scene(&mut Rng(1), 4096, 4096);
+        Self::of(scene, &Settings::default())
+    }
+}
+
+/// A point of the scene as the GPU has it.
+pub(crate) fn seen_from_viewpoint(point: DVec3) -> DVec3 {
+    (point - VIEWPOINT) / UNIT
+}
+
+/// Planes' numbers, as they truly are.
+struct TruePlane {
+    normal: DVec3,
+    /// From the viewpoint.
+    point: DVec3,
+    /// Directions of the sides, and their lengths.
+    sides: Option<([DVec3; 2], DVec2)>,
+}
+
+fn true_plane(shape: &Shape) -> TruePlane {
+    let Shape::Plane {
+        normal,
+        point,
+        extent,
+    } = shape
+    else {
+        panic!("no plane")
+    };
+    let normal = normal.normalize();
+    TruePlane {
+        normal,
+        point: seen_from_viewpoint(*point),
+        sides: match extent {
+            Extent::Unbounded => None,
+            Extent::Rectangle(r) => {
+                let first = (r.xdir - normal * normal.dot(r.xdir)).normalize();
+                Some(([first, normal.cross(first)], r.dimensions / UNIT))
+            }
+        },
+    }
+}
+
+/// Rays that are known to be where they are; that are off by as much as they may be; by up to a third of a radian.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Beams {
+    Exact,
+    Off,
+    Wild,
+}
+
+fn beam(rng: &mut Rng, beams: Beams, base: DVec3, dir: DVec3, hint: DVec3) -> TrueBeam {
+    match beams {
+        Beams::Exact => TrueBeam::exact(base, dir),
+        Beams::Off | Beams::Wild => TrueBeam::off(rng, base, dir, hint, beams == Beams::Wild),
+    }
+}
+
+/// A ray to the plane: steep or grazing, to its middle or to its edges, from near or far, or away from it.
+fn toward_plane(rng: &mut Rng, plane: &TruePlane, beams: Beams) -> TrueBeam {
+    let target = plane.point
+        + match plane.sides {
+            None => {
+                let size = rng.log(-1.0, 1.0);
+                let way = rng.within(size);
+                way - plane.normal * plane.normal.dot(way)
+            }
+            Some((rows, lengths)) => {
+                let mut p = [0, 1].map(|_| rng.uniform(-0.2, 1.2));
+                if rng.chance(0.3) {
+                    p[rng.below(2)] =
+                        f64::from(rng.below(2) as u32) + rng.sign() * rng.log(-8.0, -2.0);
+                }
+                rows[0] * p[0] * lengths.x + rows[1] * p[1] * lengths.y
+            }
+        };
+    let mut dir = rng.unit();
+    if rng.chance(0.3) {
+        dir = dir - plane.normal * plane.normal.dot(dir)
+            + plane.normal * rng.sign() * rng.log(-6.0, -1.0);
+    }
+    let dir = dir.normalize();
+    let distance = rng.log(-3.0, 2.5) * if rng.chance(0.85) { 1.0 } else { -1.0 };
+    beam(rng, beams, target - dir * distance, dir, plane.normal)
+}
+
+const CALL: &str = "
+    let a = items[3u * i];
+    let b = items[3u * i + 1u];
+    let c = items[3u * i + 2u];
+    let record = bitcast<u32>(a.w);
+    let beam = Beam(a.xyz, b.xyz, b.w, c.x, c.y);
+    let range = Range(NOTHING, 0u, 0.0, T_MAX, 0.0, 0.0);
+";
+
+const MEETING: &str = "
+    answers[4u * i] = vec4f(m.t, m.error, m.low, m.high);
+    answers[4u * i + 1u] = vec4f(select(0.0, 1.0, m.hit), select(0.0, 1.0, m.possible), 0.0, 0.0);
+    var met: Met;
+    met.t = m.t;
+    met.error = m.error;
+    met.object = object;
+    let p = locate_met(beam, met);
+    answers[4u * i + 3u] = vec4f(p.position, p.error);
+";
+
+fn told(items: &mut Vec<f32>, beam: &TrueBeam, record: usize) {
+    let start = items.len();
+    items.extend(beam.told);
+    items[start + 3] = f32::from_bits(record as u32);
+}
+
+/// A meeting that the shader claims, against whether and where the ray truly meets the surface.
+fn judge(seen: &mut Seen, answers: &[[f32; 4]], hits: bool, t: f64) -> bool {
+    let [found, error, low, high] = answers[0].map(f64::from);
+    let [sure, possible, ..] = answers[1].map(|flag| flag == 1.0);
+    seen.decision(sure, possible, hits);
+    if sure {
+        seen.error((found - t).abs(), error);
+    }
+    if possible && hits {
+        seen.must(low <= t && t <= high);
+    }
+    sure
+}
+
+/// Where the shader says that a ray meets a surface.
+fn place(seen: &mut Seen, answer: [f32; 4], truth: DVec3) {
+    let [x, y, z, error] = answer.map(f64::from);
+    seen.error((DVec3::new(x, y, z) - truth).length(), error);
+}
+
+/// What the shader makes a point of a meeting with.
+fn inputs(world: &World) -> [(u32, &[u8]); 3] {
+    let lit = world.packed.lit.as_ref().unwrap();
+    [
+        (2, bytemuck::cast_slice(&lit.objects)),
+        (14, bytemuck::cast_slice(&lit.planes)),
+        (15, bytemuck::cast_slice(&lit.spheres)),
+    ]
+}
+
+/// Meetings with planes and rectangles, and where they are, where they are certain.
+pub(crate) fn planes(
+    gpu: &Gpu,
+    world: &World,
+    wgsl: &str,
+    beams: Beams,
+    count: usize,
+    names: [&'static str; 2],
+) -> [Seen; 2] {
+    let records = &world.packed.lit.as_ref().unwrap().planes;
+    let truth: Vec<_> = records
+        .iter()
+        .map(|r| true_plane(&world.scene.objects[r.object as usize].shape))
+        .collect();
+    let mut rng = Rng(2);
+    let mut items = Vec::new();
+    let rays: Vec<_> = (0..count)
+        .map(|i| {
+            let record = i % records.len();
+            let beam = toward_plane(&mut rng, &truth[record], beams);
+            told(&mut items, &beam, record);
+            beam
+        })
+        .collect();
+    let body = format!(
+        "{CALL}let m = plane_hits_from(world_planes[record], beam, range);
+    let object = world_planes[record].object;{MEETING}"
+    );
+    let inputs = inputs(world);
+    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
+    let [mut seen, mut points] = names.map(Seen::new);
+    for (i, beam) in rays.iter().enumerate() {
+        let plane = &truth[i % records.len()];
+        let t = plane.normal.dot(plane.point - beam.base) / plane.normal.dot(beam.dir);
+        let hit = beam.base + t * beam.dir;
+        let axis = plane.normal.abs().max_element() == 1.0 && plane.normal.z != 0.0;
+        let inside = plane.sides.is_none_or(|(rows, lengths)| {
+            let from = hit - plane.point;
+            (0.0..=lengths.x).contains(&from.dot(rows[0]))
+                && (0.0..=lengths.y).contains(&from.dot(rows[1]))
+        });
+        let below = axis || hit.z <= -VIEWPOINT.z / UNIT;
+        if judge(&mut seen, &answers[4 * i..], t > 0.0 && inside && below, t) {
+            place(&mut points, answers[4 * i + 3], hit);
+        }
+    }
+    [seen, points]
+}
+
+/// A ray past the sphere's middle, or past its edge, from near or far, from inside, from the sphere itself.
+fn toward_sphere(rng: &mut Rng, center: DVec3, radius: f64, beams: Beams) -> TrueBeam {
+    let dir = rng.unit();
+    let across = dir.cross(rng.unit()).normalize();
+    let apart = match rng.below(8) {
+        0 => 0.0,
+        1 | 2 => 1.0 + rng.sign() * rng.log(-8.0, -1.0),
+        _ => rng.uniform(0.0, 1.1),
+    };
+    let far = match rng.below(8) {
+        // From the sphere itself, or nearly.
+        0 => radius * ((1.0 - apart * apart).max(0.0).sqrt() + rng.sign() * rng.log(-8.0, -2.0)),
+        1 => -rng.log(-1.0, 2.0),
+        2 => rng.uniform(0.0, 2.0) * radius,
+        _ => rng.log(-2.0, 2.5) + radius,
+    };
+    let base = center + across * apart * radius - dir * far;
+    beam(rng, beams, base, dir, across)
+}
+
+/// Meetings with spheres, and the normals and places where they are certain.
+pub(crate) fn spheres(
+    gpu: &Gpu,
+    world: &World,
+    wgsl: &str,
+    beams: Beams,
+    count: usize,
+    names: [&'static str; 3],
+) -> [Seen; 3] {
+    let records = &world.packed.lit.as_ref().unwrap().spheres;
+    let truth: Vec<_> = records
+        .iter()
+        .map(|r| match world.scene.objects[r.object as usize].shape {
+            Shape::Sphere { center, radius } => (seen_from_viewpoint(center), radius / UNIT),
+            Shape::Plane { .. } => panic!("no sphere"),
+        })
+        .collect();
+    let mut rng = Rng(3);
+    let mut items = Vec::new();
+    let rays: Vec<_> = (0..count)
+        .map(|i| {
+            let (center, radius) = truth[i % records.len()];
+            let beam = toward_sphere(&mut rng, center, radius, beams);
+            told(&mut items, &beam, i % records.len());
+            beam
+        })
+        .collect();
+    let body = format!(
+        "{CALL}let m = sphere_hits_from(world_spheres[record], beam, range);
+    let object = world_spheres[record].object;{MEETING}
+    answers[4u * i + 2u] = sphere_met(world_spheres[record], beam);"
+    );
+    let inputs = inputs(world);
+    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
+    let [mut meetings, mut normals, mut points] = names.map(Seen::new);
+    for (i, beam) in rays.iter().enumerate() {
+        let (center, radius) = truth[i % records.len()];
+        let to_center = center - beam.base;
+        let along = to_center.dot(beam.dir);
+        let apart = to_center - along * beam.dir;
+        let disc = (radius - apart.length()) * (radius + apart.length());
+        let root = disc.max(0.0).sqrt();
+        let t = along - root;
+        if judge(&mut meetings, &answers[4 * i..], disc > 0.0 && t > 0.0, t) {
+            let normal = -(apart + root * beam.dir) / radius;
+            let [x, y, z, error] = answers[4 * i + 2].map(f64::from);
+            normals.error((DVec3::new(x, y, z) - normal).length(), error);
+            place(&mut points, answers[4 * i + 3], beam.base + t * beam.dir);
+        }
+    }
+    [meetings, normals, points]
+}
