@@ -10,7 +10,7 @@ use bytemuck::Zeroable;
 
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
-use crate::shader::compose::WORKGROUP;
+use crate::shader::constants::WORKGROUP;
 use crate::shader::records::Job;
 
 /// Pixels of the first dispatch, whose speed is not known yet.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::GpuError;
 use super::selftest::{self, Outcome};
 use super::turn::Turn;
-use crate::shader::compose::WORKGROUP;
+use crate::shader::constants::WORKGROUP;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
 /// An open device.

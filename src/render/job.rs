@@ -16,7 +16,8 @@ use crate::gpu::{GpuError, bands};
 use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::settings::Precision;
-use crate::shader::compose::{Entry, LOOP_ITERATIONS, compose};
+use crate::shader::compose::{Entry, compose};
+use crate::shader::constants::LOOP_ITERATIONS;
 use crate::shader::feature_set::FeatureSet;
 use crate::shader::pack::Packed;
 

@@ -17,9 +17,6 @@ use super::preprocess::{Directives, preprocess};
 use super::record::{Layout, Record as _};
 use super::records::{self, CameraNumbers};
 
-/// Side of the square workgroup: 16×16 or 256×1 were a fifth faster than 8×8 on lavapipe.
-pub const WORKGROUP: u32 = 16;
-
 /// What the composed shader's entry point makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entry {
@@ -200,13 +197,6 @@ fn unrolled_world(
     }
     text
 }
-
-/// lavapipe ends every loop, without a word, once the loops of an invocation have gone round 65,535 times together; and
-/// counts for all invocations that are lanes of one vector, as long as any of them goes round.
-const LOOP_LIMIT: usize = 65_535;
-
-/// Most iterations of the loops outside the tiles, for one primary ray. The shader counts those of the others.
-pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
 
 #[cfg(test)]
 mod tests {

@@ -1,13 +1,22 @@
 //! The constants that the shader's text refers to by name: the camera, counts, limits, and what error bounds need.
 
 use super::bounds;
-use super::compose::WORKGROUP;
 use super::feature::{Feature, Features};
 use super::feature_set::{FeatureSet, PARTIAL_HEAD};
 use super::kind::SurfaceKind;
 use super::literal::literal;
 use super::pack::Packed;
 use super::record::Record as _;
+
+/// Side of the square workgroup: 16×16 or 256×1 were a fifth faster than 8×8 on lavapipe.
+pub const WORKGROUP: u32 = 16;
+
+/// lavapipe ends every loop, without a word, once the loops of an invocation have gone round 65,535 times together; and
+/// counts for all invocations that are lanes of one vector, as long as any of them goes round.
+const LOOP_LIMIT: usize = 65_535;
+
+/// Most iterations of the loops outside the tiles, for one primary ray. The shader counts those of the others.
+pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
 
 /// Most rays that wait while another is followed; a pixel that needs more is handed to the CPU.
 const STACK: usize = 8;

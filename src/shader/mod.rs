@@ -8,7 +8,7 @@
 pub mod binding;
 pub mod bounds;
 pub mod compose;
-mod constants;
+pub mod constants;
 pub mod describe;
 pub mod feature;
 pub mod feature_set;

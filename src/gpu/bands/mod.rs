@@ -15,7 +15,7 @@ use super::device::Gpu;
 use super::pipeline::Pipeline;
 use crate::frame::Stop;
 use crate::jitter::Jitter;
-use crate::shader::compose::WORKGROUP;
+use crate::shader::constants::WORKGROUP;
 use assembly::Assembly;
 use plan::Plan;
 use slot::Slot;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::jitter::Jitter;
-use crate::shader::compose::WORKGROUP;
+use crate::shader::constants::WORKGROUP;
 
 /// Ray–object tests of the first dispatch, whose speed is not known yet, for each second that it may take: what two CPU cores
 /// do at least.

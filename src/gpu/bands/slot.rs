@@ -9,7 +9,7 @@ use super::assembly::Assembly;
 use super::partial;
 use super::plan::Rectangle;
 use super::{BandTimes, Frame, OFFSET_BYTES};
-use crate::shader::compose::WORKGROUP;
+use crate::shader::constants::WORKGROUP;
 use crate::shader::records::{CameraNumbers, Job};
 
 /// Buffers for one dispatch under way.
