@@ -33,7 +33,7 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
     let share = ended.weight * (kept / ended.total * CAMERA_GAIN);
     (*traced).color += share * lit.color;
 //#if certified
-    (*traced).error += share * (lit.error * (1.0 + ended.weight_error) + lit.color * (ended.weight_error + 1.01 * ended.total_error / ended.total + 12.0 * U))
+    (*traced).error += share * (lit.error * (1.0 + ended.weight_error) + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + 12.0 * U))
         + 2.0 * U * (*traced).color;
 //#end
 }
@@ -49,7 +49,7 @@ fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
     mirror.weight = ended.weight * specular;
 //#if certified
     mirror.beam.dir = barrier(2.0 * along * point.normal + ended.beam.dir);
-    mirror.beam.dir_error = 1.01 * ended.beam.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
+    mirror.beam.dir_error = SECOND_ORDER * ended.beam.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
     mirror.beam.base_error = point.error;
     mirror.beam.size = point.size;
     mirror.total_error = ended.total_error;

@@ -44,7 +44,7 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
 
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, beam: Beam) {
-    (*walk).pad = 1.01 * (beam.base_error + beam.dir_error * (beam.size + BVH_SIZE)) + 4.0 * U * (beam.size + BVH_SIZE);
+    (*walk).pad = SECOND_ORDER * (beam.base_error + beam.dir_error * (beam.size + BVH_SIZE)) + 4.0 * U * (beam.size + BVH_SIZE);
 }
 //#end
 

@@ -93,7 +93,7 @@ fn plane_hits_from(plane: WorldPlane, beam: Beam, range: Range) -> Meeting {
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
         let margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
-        let margin_error = 1.01 * position_error + plane.sides_error + PLANE_ROUNDINGS * U * (beam.size + abs(t));
+        let margin_error = SECOND_ORDER * position_error + plane.sides_error + PLANE_ROUNDINGS * U * (beam.size + abs(t));
         out |= in & (margin < -margin_error);
         inside &= margin > margin_error;
     }

@@ -25,7 +25,7 @@ fn locate(ray: Ray, hit: Hit) -> Point {
     point.position = ray.w * s;
 //#if certified
     let length = ray.w2 * ray.inverse_length;
-    point.error = 1.01 * s * (W_ERROR + length * (s * hit.error + 5.0 * U));
+    point.error = SECOND_ORDER * s * (W_ERROR + length * (s * hit.error + HIT_ROUNDINGS * U));
     point.size = abs(point.position.x) + abs(point.position.y) + abs(point.position.z);
 //#end
 //#end
@@ -95,7 +95,7 @@ fn locate_met(beam: Beam, met: Met) -> Point {
     point.object = met.object;
     point.position = barrier(beam.base + met.t * beam.dir);
 //#if certified
-    point.error = 1.01 * (beam.base_error + met.t * beam.dir_error + met.error) + POSITION_ROUNDINGS * U * (beam.size + met.t);
+    point.error = SECOND_ORDER * (beam.base_error + met.t * beam.dir_error + met.error) + POSITION_ROUNDINGS * U * (beam.size + met.t);
 //#end
     complete(&point);
 //#if sphere_beyond
@@ -105,7 +105,7 @@ fn locate_met(beam: Beam, met: Met) -> Point {
         let normal = sphere_met(sphere, beam);
         on_sphere(&point, normal);
         point.position = barrier(sphere.center + sphere.radius * normal.xyz);
-        point.error = 1.01 * sphere.radius * normal.w + POSITION_ROUNDINGS * U * sphere.size; //~
+        point.error = SECOND_ORDER * sphere.radius * normal.w + POSITION_ROUNDINGS * U * sphere.size; //~
     }
 //#end
 //#if certified

@@ -3,7 +3,7 @@
 
 // What an error in `square`, which is at least that error, is to its root.
 fn root_error(square: f32, error: f32, inverse_root: f32) -> f32 {
-    return error * inverse_root * select(1.01, 0.54, square > 4.0 * error);
+    return error * inverse_root * select(ROOT_NEAR, ROOT_FAR, square > ROOT_FAR_FROM * error);
 }
 //#end
 
@@ -65,7 +65,7 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
     let root = least * inverse_root;
     let normal = barrier((vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s);
     let parts_error = point.form_error + point.center_size * (root_error(least, sphere.disc_error, inverse_root) + ROOT_ROUNDINGS * U * root);
-    return vec4f(normal, 1.01 * s * (parts_error + hit.error) + NORMAL_ROUNDINGS * U);
+    return vec4f(normal, SECOND_ORDER * s * (parts_error + hit.error) + NORMAL_ROUNDINGS * U);
 //#else
     let root = sqrt(max(disc, 0.0));
     let normal = (vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s;
@@ -97,7 +97,7 @@ fn sphere_passage(center: vec3f, radius: f32, size: f32, beam: Beam) -> Passage 
     passage.apart = dot(passage.perpendicular, passage.perpendicular);
 //#if certified
     let far = abs(passage.along) + radius;
-    passage.off = 1.01 * beam.base_error + U * size + far * ((2.05 + 2.0 * beam.dir_error) * beam.dir_error + PERPENDICULAR_ROUNDINGS * U);
+    passage.off = SECOND_ORDER * beam.base_error + U * size + far * ((2.05 + 2.0 * beam.dir_error) * beam.dir_error + PERPENDICULAR_ROUNDINGS * U);
 //#end
     return passage;
 }
@@ -151,7 +151,7 @@ fn sphere_met(sphere: WorldSphere, beam: Beam) -> vec4f {
 //#if certified
     let disc_error = passage.off * (2.01 * sqrt(passage.apart) + passage.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
-    let error = 1.01 * (passage.off + reach_error + root * beam.dir_error);
+    let error = SECOND_ORDER * (passage.off + reach_error + root * beam.dir_error);
     return vec4f(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);
 //#else
     return vec4f(normal, 0.0);

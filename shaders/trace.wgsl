@@ -49,7 +49,7 @@ fn hit_decides(traced: ptr<function, Traced>, ray: Ray, hit: Hit) -> bool {
     let dark = max(hit.inverse + hit.error, hit.rival) * ray.inverse_length < DARK;
     var sure = hit.inverse - hit.rival > hit.error;
 //#if first_order
-    sure &= hit.inverse > 128.0 * hit.error;
+    sure &= hit.inverse > FIRST_ORDER * hit.error;
 //#end
     if dark | !sure {
         (*traced).verdict = select(UNDECIDED, 0u, dark);
@@ -63,7 +63,7 @@ fn hit_decides(traced: ptr<function, Traced>, ray: Ray, hit: Hit) -> bool {
     }
 //#else
     let nothing = (hit.inverse + hit.error <= 0.0) & (hit.rival <= 0.0);
-    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse > LEAST_INVERSE) & (hit.inverse > 128.0 * hit.error);
+    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse > LEAST_INVERSE) & (hit.inverse > FIRST_ORDER * hit.error);
     if nothing | !sure {
         (*traced).verdict = select(UNDECIDED, 0u, nothing);
         return true;
@@ -102,7 +102,7 @@ fn ray_trace(ray: Ray) -> Traced {
 //#end
 //#if lit
     let t = ray.w2 * ray.inverse_length / hit.inverse;
-    let t_error = t * (1.01 * hit.error / hit.inverse + LENGTH_ERROR); //~
+    let t_error = t * (SECOND_ORDER * hit.error / hit.inverse + LENGTH_ERROR); //~
 //#if branches
     var met: PathPoint;
     met.point = locate(ray, hit);
@@ -113,7 +113,7 @@ fn ray_trace(ray: Ray) -> Traced {
     let lit = shade(locate(ray, hit), primary_beam(ray));
     let share = CAMERA_GAIN / t;
     traced.color = share * lit.color;
-    traced.error = share * (lit.error + lit.color * (1.01 * t_error / t + 12.0 * U)); //~
+    traced.error = share * (lit.error + lit.color * (SECOND_ORDER * t_error / t + 12.0 * U)); //~
 //#end
     if steps > STEPS_LIMIT {
         traced.verdict = UNDECIDED;
@@ -123,9 +123,9 @@ fn ray_trace(ray: Ray) -> Traced {
     let share = CAMERA_GAIN * ray.inverse_length;
     traced.color = ambient.color * (share * hit.inverse);
 //#if certified
-    traced.error = ambient.color * (share * (1.01 * hit.error + VALUE_ERROR * hit.inverse));
+    traced.error = ambient.color * (share * (SECOND_ORDER * hit.error + VALUE_ERROR * hit.inverse));
 //#if modulated
-    traced.error += ambient.error * (1.01 * share * hit.inverse);
+    traced.error += ambient.error * (SECOND_ORDER * share * hit.inverse);
 //#end
 //#end
 //#end

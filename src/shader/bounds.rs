@@ -25,6 +25,19 @@ named! {
     LEAST_INVERSE = 1.0 / (1_u64 << 40) as f64;
     /// Directions that are known less well than this are not followed: the bounds are first order there.
     DIR_LIMIT = 1.0 / 128.0;
+    /// Hits whose 1/s is less than this many times its bound are left to the CPU where their error goes on: the bounds that
+    /// follow are first order.
+    FIRST_ORDER = 128.0;
+    /// What a bound of the first order is multiplied by: products of two errors are below a hundredth of it.
+    SECOND_ORDER = 1.01;
+    /// The error of a root is at most this times the square's over the root.
+    ROOT_NEAR = 1.01;
+    /// The same where the square is above `ROOT_FAR_FROM` times its error.
+    ROOT_FAR = 0.54;
+    /// See `ROOT_FAR`.
+    ROOT_FAR_FROM = 4.0;
+    /// Roundings of the position of a primary hit, for a unit of its distance.
+    HIT_ROUNDINGS = 5.0;
     /// Roundings of a dot product with a plane, of its sum with an offset.
     PLANE_ROUNDINGS = 6.0;
     /// Roundings of base + t·dir.

@@ -35,6 +35,12 @@ pub struct Lanes {
 #[derive(Debug)]
 struct Constants {
     u: f32,
+    first_order: f32,
+    second_order: f32,
+    root_near: f32,
+    root_far: f32,
+    root_far_from: f32,
+    hit_roundings: f32,
     root_roundings: f32,
     index_roundings: f32,
     value_error: f32,
@@ -143,6 +149,12 @@ impl Lanes {
         let spread = f64::from(packed.camera.spread);
         let constants = Constants {
             u: U as f32,
+            first_order: bounds::up(bounds::FIRST_ORDER),
+            second_order: bounds::up(bounds::SECOND_ORDER),
+            root_near: bounds::up(bounds::ROOT_NEAR),
+            root_far: bounds::up(bounds::ROOT_FAR),
+            root_far_from: bounds::up(bounds::ROOT_FAR_FROM),
+            hit_roundings: bounds::up(bounds::HIT_ROUNDINGS),
             root_roundings: bounds::up(bounds::ROOT_ROUNDINGS),
             index_roundings: bounds::up(bounds::INDEX_ROUNDINGS),
             value_error: bounds::up(bounds::VALUE_ROUNDINGS * spread * U),
@@ -216,10 +228,10 @@ impl Lanes {
                 sphere.disc_error
             };
             let root = least.sqrt();
-            let share = if least > 4.0 * sphere.disc_error {
-                0.54
+            let share = if least > self.constants.root_far_from * sphere.disc_error {
+                self.constants.root_far
             } else {
-                1.01
+                self.constants.root_near
             };
             inverse[i] = sphere.gain * (along[i] + root);
             error[i] = sphere.gain * (sphere.along_error + share * (sphere.disc_error / root))

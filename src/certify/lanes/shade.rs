@@ -18,7 +18,11 @@ impl Lanes {
             inverse_length: [0.0; LANES],
         };
         // Hits that the color depends on must be known to the first order where it is modulated.
-        let coarse = if self.modulated { 128.0 } else { 0.0 };
+        let coarse = if self.modulated {
+            self.constants.first_order
+        } else {
+            0.0
+        };
         let (mut dark, mut sure) = ([false; LANES], [false; LANES]);
         let (mut value, mut value_error) = ([0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
@@ -35,7 +39,8 @@ impl Lanes {
             sure[i] = (inverse - rival > error) & (inverse > coarse * error);
             let share = camera.gain * rays.inverse_length[i];
             value[i] = share * inverse;
-            value_error[i] = share * (1.01 * error + self.constants.value_error * inverse);
+            value_error[i] = share
+                * (self.constants.second_order * error + self.constants.value_error * inverse);
         }
         let mut ambient = [[0.0; LANES]; 3];
         let mut tiles: Option<(u32, Tiles)> = None;
@@ -87,7 +92,11 @@ impl Lanes {
     /// Which tiles the rays hit that meet a tiled plane: `locate` and `tplane_foreground`.
     fn tiles(&self, plane: &TiledPlane, rays: &Rays, closest: &Closest) -> Tiles {
         let Constants {
-            u, index_roundings, ..
+            u,
+            index_roundings,
+            second_order,
+            hit_roundings,
+            ..
         } = self.constants;
         let camera = &self.packed.camera;
         let rows = [
@@ -102,7 +111,9 @@ impl Lanes {
             let s = 1.0 / closest.inverse[i];
             let [x, y, z] = [rays.wx[i] * s, rays.wy * s, -camera.numbers.distance * s];
             let length = rays.w2[i] * rays.inverse_length[i];
-            let error = 1.01 * s * (camera.w_error + length * (s * closest.error[i] + 5.0 * u));
+            let error = second_order
+                * s
+                * (camera.w_error + length * (s * closest.error[i] + hit_roundings * u));
             let error = error + index_roundings * u * (x.abs() + y.abs() + z.abs());
             let mut sum = plane.parity;
             for (axis, (row, fraction)) in rows.into_iter().enumerate() {
