@@ -13,6 +13,7 @@ use plumb::prepare::later::Laters;
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Bounded, Lazy, Real};
 use plumb::scene::{Scene, load_from};
+use plumb::settings::Settings;
 
 fn scene(text: &str) -> Scene {
     load_from("test", text.as_bytes(), Path::new(".")).unwrap()
@@ -155,7 +156,11 @@ fn what_is_missing_of_a_part_is_added() {
     const SAMPLES: u32 = 40;
     let path = common::scenes().join("lit/mirror_balls.txt");
     let scene = common::read(&path);
-    let view = View::new(0.0, SAMPLES);
+    let view = Settings {
+        samples: SAMPLES,
+        ..Settings::default()
+    }
+    .view();
     let stages = Stages::new(&scene, view);
     let plain = Prepared::<f64>::new(&scene, view);
     let limits = Limits::default();

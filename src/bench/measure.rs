@@ -311,7 +311,7 @@ fn times(warm_up: f64, runs: Vec<f64>) -> Result<Times, Unmeasured> {
 /// A picture in plain f64, on all cores; the seconds of tracing, and of all.
 fn plain(scene: &Scene, settings: &Settings) -> (Picture, f64, f64) {
     let start = Instant::now();
-    let prepared = Prepared::<f64>::new(scene, settings.screen_tolerance);
+    let prepared = Prepared::<f64>::new(scene, settings.view());
     let limits = settings.sample_limits();
     let [width, height] = scene.camera.pixeldim;
     let mut rgb = vec![0; 3 * width as usize * height as usize];

@@ -10,6 +10,7 @@ use plumb::cpu::debug::Shown;
 use plumb::cpu::trace::Limits;
 use plumb::render::{Backend, Precision, Settings, Spread};
 use plumb::scene::Scene;
+use plumb::settings::Supersampling;
 
 use super::cache;
 use super::values::{Rows, path, rows, size, threads, tolerance};
@@ -106,12 +107,13 @@ impl PictureOptions {
     /// Refuses what would take memory without end; `scene` has its final size.
     pub(crate) fn check(&self, scene: &Scene) -> Result<()> {
         let width = scene.camera.pixeldim[0];
-        let course = self.samples > 1 && self.jitter == JitterName::Course;
-        if course && u64::from(width) * u64::from(self.samples) > MOST_COURSE_SAMPLES {
+        if let Some(Supersampling { samples, spread }) = self.settings().supersampling()
+            && spread == Spread::Course
+            && u64::from(width) * u64::from(samples) > MOST_COURSE_SAMPLES
+        {
             bail!(
-                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {} samples \
-                 has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory",
-                self.samples
+                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {samples} \
+                 samples has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory"
             );
         }
         Ok(())
@@ -231,7 +233,8 @@ impl RenderOptions {
                 "--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out"
             );
         }
-        if self.picture.samples > 1 && !self.debug.is_empty() {
+        let picture = self.picture.settings();
+        if picture.supersampling().is_some() && !self.debug.is_empty() {
             bail!(
                 "--debug lists the ray through the middle of a pixel, and --samples takes others: leave one of them out"
             );
@@ -251,7 +254,7 @@ impl RenderOptions {
             verdicts: self.verdicts.is_some(),
             band_rows: self.band_rows,
             cache: cache::folder(),
-            ..self.picture.settings()
+            ..picture
         })
     }
 

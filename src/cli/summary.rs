@@ -46,7 +46,7 @@ fn decided(report: &Report) -> String {
         (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
         (Precision::Certified, Backend::Gpu, _) => {
             let percent = report.refined_percent;
-            let samples = if report.samples > 1 {
+            let samples = if report.jitter.is_some() {
                 let percent = report.refined_samples_percent;
                 format!(" ({percent:.2} % of the samples)")
             } else {
@@ -94,7 +94,7 @@ pub(crate) fn answer(strict: bool, report: &Report) -> Answer {
 mod tests {
     use std::path::Path;
 
-    use plumb::render::{Settings, render};
+    use plumb::render::{Settings, Spread, render};
     use plumb::scene::load_from;
 
     use super::*;
@@ -151,6 +151,7 @@ mod tests {
             "{text}"
         );
         report.samples = 16;
+        report.jitter = Some(Spread::Hash);
         report.refined_samples_percent = 0.021;
         let text = line(&report);
         assert!(

@@ -8,7 +8,7 @@ use std::time::Instant;
 use super::finish::{Digest, Finish, Stop, Wrong};
 use super::{Backend, Emit, Error, Live, Report, Settings};
 use crate::certify::lanes::Lanes;
-use crate::certify::pixels::{Tracer, Wanted};
+use crate::certify::pixels::Tracer;
 use crate::certify::{Tally, trust};
 use crate::frame::Band;
 use crate::gpu::features::FeatureSet;
@@ -17,7 +17,6 @@ use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands, compose};
 use crate::jitter::Jitter;
 use crate::scene::Scene;
-use crate::settings::Precision;
 
 /// Everything that a tracer needs to know.
 pub(super) struct Job<'a> {
@@ -49,7 +48,7 @@ impl Job<'_> {
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
         }
-        let certified = self.settings.precision == Precision::Certified;
+        let certified = self.settings.has_gpu_bounds();
         if let (true, Some(reason)) = (certified, packed.unprovable) {
             report.fallback = Some(format!(
                 "{reason} for f32 with error bounds, so the CPU renders"
@@ -199,10 +198,6 @@ impl Job<'_> {
         }
         let stages = self.on_threads(|| self.tracer.stages());
         let lanes = self.on_threads(|| Lanes::new(stages.bounded(), self.scene, self.settings));
-        let wanted = Wanted {
-            values: self.settings.values,
-            verdicts: self.settings.verdicts,
-        };
         let most = ((4 << 20) / self.width).max(1);
         let fixed = self.settings.band_rows.map(|rows| rows.clamp(1, most));
         let mut height = fixed.unwrap_or(16).min(rows.end - rows.start);
@@ -211,7 +206,7 @@ impl Job<'_> {
         while end > rows.start {
             let kernel = Instant::now();
             let (band, counted) =
-                self.on_threads(|| self.tracer.band(end - height..end, wanted, lanes.as_ref()))?;
+                self.on_threads(|| self.tracer.band(end - height..end, lanes.as_ref()))?;
             tally = tally.merge(counted);
             let seconds = kernel.elapsed().as_secs_f64();
             report.seconds.kernel += seconds;

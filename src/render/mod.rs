@@ -19,7 +19,6 @@ use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
 use crate::gpu::{self, GpuError};
-use crate::prepare::View;
 use crate::scene::Scene;
 use job::Job;
 
@@ -86,7 +85,7 @@ impl Report {
     /// Of a rendering that is about to begin.
     fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
         let [width, height] = scene.camera.pixeldim;
-        let rows = settings.rows.clone().unwrap_or(0..height);
+        let rows = settings.rows_of(height);
         if rows.is_empty() || rows.end > height {
             return Err(Error::Rows {
                 start: rows.start,
@@ -100,7 +99,7 @@ impl Report {
             rows: [rows.start, rows.end],
             screen_tolerance: settings.screen_tolerance,
             samples: settings.samples,
-            jitter: (settings.samples > 1).then_some(settings.jitter),
+            jitter: settings.supersampling().map(|several| several.spread),
             max_path: (!scene.lights.is_empty()).then_some(settings.limits.max_path),
             precision: settings.precision,
             backend: Backend::Cpu,
@@ -318,17 +317,8 @@ fn run(
     report: &mut Report,
 ) -> Result<(), Error> {
     let [start, end] = report.rows;
-    let view = View::new(settings.screen_tolerance, settings.samples);
     let jitter = settings.sampling(report.width, end);
-    let tracer = Tracer::new(
-        scene,
-        view,
-        settings.sample_limits(),
-        &jitter,
-        report.width,
-        settings.values,
-    )
-    .stopping(stop);
+    let tracer = Tracer::new(scene, settings, &jitter).stopping(stop);
     let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build();
     let pool = settings.threads.map(threads).transpose();
     let pool = pool.map_err(|error| Error::Threads(error.to_string()))?;

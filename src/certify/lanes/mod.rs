@@ -125,7 +125,7 @@ pub struct Eight {
 impl Lanes {
     /// The scene as the GPU would get it; None where it takes more than there is here.
     pub fn new(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Option<Self> {
-        if prepared.world.is_some() || settings.samples > 1 || settings.values {
+        if prepared.world.is_some() || settings.supersampling().is_some() || settings.values {
             return None;
         }
         Self::of(Packed::prepared(prepared, scene, settings))
