@@ -3,8 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DVec2, DVec3};
+use plumb::gpu::adapters;
 use plumb::gpu::compose::compose;
-use plumb::gpu::device::{self, Gpu};
+use plumb::gpu::device::Gpu;
 use plumb::gpu::features::FeatureSet;
 use plumb::gpu::pack::Packed;
 use plumb::prepare;
@@ -45,7 +46,7 @@ fn rotation(v: vec3f, w: vec3f) -> mat3x3f {
 
 /// An open adapter; without one there is no test.
 fn open(wanted: Option<&str>) -> Gpu {
-    device::open(wanted).unwrap_or_else(|error| {
+    adapters::open(wanted).unwrap_or_else(|error| {
         panic!("{error}. This test needs a GPU adapter, a software one will do: `sh scripts/test.sh` sees to it")
     })
 }

@@ -142,7 +142,7 @@ pub(crate) mod tests {
     #[test]
     fn a_device_is_tested_once_and_again_when_its_trust_is_revoked() {
         let folder = tempfile::tempdir().unwrap();
-        let mut gpu = crate::gpu::device::open(None).unwrap();
+        let mut gpu = crate::gpu::adapters::open(None).unwrap();
         gpu.identity += " of this test";
         gpu.tells_version = true;
         assert_eq!(doubts(&gpu, Some(folder.path())), None);

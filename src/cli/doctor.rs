@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use plumb::gpu::device::{AdapterSummary, adapters};
+use plumb::gpu::adapters::{self, AdapterSummary};
 use plumb::probe::digits::count;
 use plumb::render::install_hint;
 use serde_json::json;
@@ -24,7 +24,7 @@ pub(crate) struct Args {
 
 /// Lists the adapters.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
-    let adapters = adapters();
+    let adapters = adapters::list();
     let chosen = adapters
         .iter()
         .position(|adapter| adapter.problem.is_none());

@@ -1,10 +1,11 @@
 //! The GPU: the only code that knows wgpu.
 //!
 //! In the order of the flow: [`pack`] rounds the prepared scene to flat f32 records, [`features`] says which of them there
-//! are, [`compose`] writes the WGSL for exactly those, [`device`] finds an adapter and opens it, [`pipeline`] compiles and
-//! binds, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`] tries out a device before it is trusted. [`canvas`] holds a picture that a
-//! window shows. [`describe`] prints each stage.
+//! are, [`compose`] writes the WGSL for exactly those, [`adapters`] finds an adapter, [`device`] opens it, [`pipeline`]
+//! compiles and binds, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`] tries out a device
+//! before it is trusted. [`canvas`] holds a picture that a window shows. [`describe`] prints each stage.
 
+pub mod adapters;
 pub mod bands;
 pub mod bounds;
 pub mod canvas;

@@ -66,7 +66,6 @@ impl Job<'_> {
             None => gpu.compile(&wgsl, "main"),
         };
         let pipeline = Pipeline::with(gpu, &packed, &features, compile)?;
-        [report.seconds.instance, report.seconds.device] = gpu.seconds;
         report.seconds.compile = pipeline.seconds[0];
         report.seconds.upload = packing + pipeline.seconds[1];
         let frame = bands::Frame {

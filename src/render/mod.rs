@@ -18,7 +18,7 @@ use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
-use crate::gpu::{self, GpuError};
+use crate::gpu::{GpuError, adapters};
 use crate::scene::Scene;
 use job::Job;
 
@@ -274,7 +274,11 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     let start = Instant::now();
     let mut report = Report::new(scene, settings)?;
     let opened = if wants_gpu(settings, &mut report)? {
-        let opened = gpu::device::open(settings.adapter.as_deref());
+        let adapter = adapters::find(settings.adapter.as_deref());
+        report.seconds.instance = start.elapsed().as_secs_f64();
+        let device = Instant::now();
+        let opened = adapter.and_then(|adapter| Gpu::open(&adapter));
+        report.seconds.device = device.elapsed().as_secs_f64();
         trusted(opened, |gpu| gpu, settings, &mut report)?
     } else {
         None
