@@ -34,4 +34,5 @@ pub mod real;
 pub mod render;
 pub mod scene;
 pub mod settings;
+pub mod stopwatch;
 pub mod vector;

@@ -93,8 +93,8 @@ impl Settings {
         }
     }
 
-    /// Whether the GPU's pixels come with error bounds, so that it knows which of them it is sure of. Certified values are
-    /// the CPU's.
+    /// Whether the GPU's pixels come with error bounds, so that it knows which of them it is sure of. Certified values
+    /// are the CPU's.
     pub fn has_gpu_bounds(&self) -> bool {
         self.precision == Precision::Certified && !self.values
     }

@@ -25,6 +25,7 @@ use crate::jitter::Jitter;
 use crate::prepare::Prepared;
 use crate::render::{self, Backend, Precision, Settings, render};
 use crate::scene::Scene;
+use crate::stopwatch::{Phase, Stopwatch};
 
 /// A scene at its final size, and how it is measured.
 pub struct Subject<'a> {
@@ -87,7 +88,7 @@ struct Frame {
     picture: Picture,
     verdicts: Vec<Stage>,
     report: render::Report,
-    /// Seconds, opening the device apart.
+    /// Seconds, opening and closing the device apart.
     seconds: f64,
 }
 
@@ -165,7 +166,7 @@ impl Subject<'_> {
         for _ in 0..self.repeat {
             let frame = self.frame(&settings, false)?;
             frames.push(frame.seconds);
-            kernels.push(frame.report.seconds.kernel);
+            kernels.push(frame.report.seconds.phases.get(Phase::Trace));
         }
         // The truth about t is this way's own.
         let hits: Vec<Seen> = self.hits.iter().map(|(seen, _)| *seen).collect();
@@ -173,7 +174,7 @@ impl Subject<'_> {
             picture: warm_up.picture,
             t: self.compared(&hits),
             doubtful_percent: None,
-            kernel: times(warm_up.report.seconds.kernel, kernels)?,
+            kernel: times(warm_up.report.seconds.phases.get(Phase::Trace), kernels)?,
             frame: times(warm_up.seconds, frames)?,
         })
     }
@@ -197,12 +198,19 @@ impl Subject<'_> {
             Err(render::Error::Gpu(error)) => return Err(error.into()),
             report => report?,
         };
-        let seconds = &report.seconds;
-        let opening = seconds.instance + seconds.device + seconds.selftest;
+        let opening: f64 = [
+            Phase::Instance,
+            Phase::Device,
+            Phase::Selftest,
+            Phase::Close,
+        ]
+        .map(|phase| report.seconds.phases.get(phase))
+        .iter()
+        .sum();
         Ok(Frame {
             picture: Picture { width, height, rgb },
             verdicts: stages,
-            seconds: seconds.total - opening,
+            seconds: report.seconds.total - opening,
             report,
         })
     }
@@ -223,10 +231,16 @@ impl Subject<'_> {
             band_rows: None,
         };
         let run = || -> Result<f64, Unmeasured> {
-            let times = bands::run(gpu, &pipeline, &frame, &|| false, &mut |_| {
-                ControlFlow::Continue(())
-            })?;
-            Ok(times.kernel)
+            let hand_on = &mut |_| ControlFlow::Continue(());
+            let watch = &mut Stopwatch::start();
+            Ok(bands::run(
+                gpu,
+                &pipeline,
+                &frame,
+                &|| false,
+                watch,
+                hand_on,
+            )?)
         };
         self.times(run()?, run)
     }

@@ -1,5 +1,5 @@
-//! The truth that ways are measured against: the certified picture comes from `measure`; here are what primary rays hit and
-//! where, and how many rays there are.
+//! The truth that ways are measured against: the certified picture comes from `measure`; here are what primary rays hit
+//! and where, and how many rays there are.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -111,8 +111,8 @@ pub struct Rays {
     pub pixels: u64,
 }
 
-/// Counts the rays that the scene asks for, in plain f64: whole trees, even where a pixel is white already. Where a pixel
-/// needs more than allowed, those counted until then.
+/// Counts the rays that the scene asks for, in plain f64: whole trees, even where a pixel is white already. Where a
+/// pixel needs more than allowed, those counted until then.
 #[must_use]
 pub fn rays(scene: &Scene, settings: &Settings) -> Rays {
     let [width, height] = scene.camera.pixeldim;

@@ -21,7 +21,8 @@ use crate::settings::Settings;
 /// others, and those stand side by side.
 const PIECE: usize = 16;
 
-/// So few pixels are decided by who asks: where the GPU is the CPU, waking another thread takes longer, measured 1 to 20 ms.
+/// So few pixels are decided by who asks: where the GPU is the CPU, waking another thread takes longer, measured 1 to
+/// 20 ms.
 const FEW: usize = 128;
 
 /// What it takes to trace a pixel of a scene on the CPU.
@@ -67,8 +68,8 @@ impl<'a> Tracer<'a> {
             .get_or_init(|| Stages::new(self.scene, self.view).with_values(self.values))
     }
 
-    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`. Of
-    /// those of which something is known only the samples that are missing are traced, if that is enough.
+    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is
+    /// `top`. Of those of which something is known only the samples that are missing are traced, if that is enough.
     pub fn pixels(
         &self,
         top: u32,

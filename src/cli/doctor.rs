@@ -13,9 +13,10 @@ use super::{Answer, SOFTWARE, args, say};
 /// What `plumb doctor` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Each is put through the self-test: \
-hard operands for + - * / sqrt, rounding, conversions, comparisons, exact sums and products behind a barrier. Exit 1: there \
-is none that can be used or trusted, and the CPU renders.")]
+Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Each is put through the \
+self-test: hard operands for + - * / sqrt, rounding, conversions, comparisons, exact sums and products behind a \
+barrier. Exit 1: \
+there is none that can be used or trusted, and the CPU renders.")]
 pub(crate) struct Args {
     /// Print the same as JSON
     #[arg(long)]

@@ -1,4 +1,5 @@
-//! `plumb render`, and the filter use `plumb < scene > picture.ppm`: scene in, picture out, and a word about how it went.
+//! `plumb render`, and the filter use `plumb < scene > picture.ppm`: scene in, picture out, and a word about how it
+//! went.
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};

@@ -9,7 +9,7 @@ use plumb::render::{Backend, Precision, Report};
 
 use super::Answer;
 
-/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
+/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
 pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> String {
     let [start, end] = report.rows;
     let mut size = format!("{}×{}", report.width, end - start);
@@ -63,7 +63,8 @@ pub(crate) fn told(report: &Report) -> Vec<String> {
     let mut lines: Vec<String> = report.fallback.iter().cloned().collect();
     if let Some(revoked) = &report.revoked {
         lines.push(format!(
-            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb doctor`"
+            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb \
+            doctor`"
         ));
     }
     if report.presumed > 0 {

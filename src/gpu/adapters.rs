@@ -38,7 +38,8 @@ pub struct AdapterSummary {
     pub selftest: Option<Vec<Outcome>>,
 }
 
-/// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software; each of them tested.
+/// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software; each of them
+/// tested.
 pub fn list() -> Vec<AdapterSummary> {
     let tested = |adapter: &wgpu::Adapter| {
         let mut summary = summary(adapter);
@@ -93,9 +94,9 @@ pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
     })
 }
 
-/// The process's one instance. It is never dropped, since that unloads the driver, and NVIDIA's can be loaded about thirty
-/// times in a process only: the next instance finds no adapter, or the process dies. So a process may open as many devices,
-/// one after the other, as it likes; and only the first of them waits for the driver.
+/// The process's one instance. It is never dropped, since that unloads the driver, and NVIDIA's can be loaded about
+/// thirty times in a process only: the next instance finds no adapter, or the process dies. So a process may open as
+/// many devices, one after the other, as it likes; and only the first of them waits for the driver.
 fn instance() -> &'static wgpu::Instance {
     static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
     INSTANCE.get_or_init(|| {

@@ -1,4 +1,5 @@
-//! A device: opening it on an adapter that [`adapters`](super::adapters) found, handing work to it, hearing of its troubles.
+//! A device: opening it on an adapter that [`adapters`](super::adapters) found, handing work to it, hearing of its
+//! troubles.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -30,8 +31,8 @@ pub struct Gpu {
 /// Lanes of a software driver's vectors, 256 bits wide as a rule.
 pub const SOFTWARE_LANES: u32 = 8;
 
-/// Whether wgpu says that a window's surface could not be set up anew because the device did not come idle, or that a frame was
-/// drawn for another size than the surface has after that.
+/// Whether wgpu says that a window's surface could not be set up anew because the device did not come idle, or that a
+/// frame was drawn for another size than the surface has after that.
 fn is_of_a_stale_surface(error: &str) -> bool {
     error.contains("before reconfiguring the Surface")
         || error.contains("is not contained in the render target")

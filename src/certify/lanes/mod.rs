@@ -1,9 +1,10 @@
-//! The GPU's arithmetic on the CPU: eight pixels of a row at once, in f32 with the GPU's error bounds (docs/NUMERICS.md).
+//! The GPU's arithmetic on the CPU: eight pixels of a row at once, in f32 with the GPU's error bounds
+//! (docs/NUMERICS.md).
 //!
-//! For scenes without lights, a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a
-//! pixel that is sure here has its exact bytes; the others, and surfaces that are not plain or tiled, are left to
-//! [`Stages`](crate::cpu::pixel::Stages). What is computed is that of `shaders/` with `certified`, in loops that a compiler makes
-//! vectors of: here the closest hits, in `shade` their colours.
+//! For scenes without lights, a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's,
+//! so a pixel that is sure here has its exact bytes; the others, and surfaces that are not plain or tiled, are left to
+//! [`Stages`](crate::cpu::pixel::Stages). What is computed is that of `shaders/` with `certified`, in loops that a
+//! compiler makes vectors of: here the closest hits, in `shade` their colours.
 
 mod shade;
 
