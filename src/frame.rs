@@ -112,7 +112,8 @@ pub enum Halt {
 /// A pixel that needs more rays than allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "pixel ({x}, {y}) needs more than {max_rays} rays for one sample: mirrors and transparent surfaces multiply them; --max-rays allows more, --max-path fewer"
+    "pixel ({x}, {y}) needs more than {max_rays} rays for one sample: mirrors and transparent surfaces multiply them; \
+    --max-rays allows more, --max-path fewer"
 )]
 pub struct PixelFault {
     /// Column, from the left.

@@ -36,4 +36,5 @@ pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shader;
+pub mod stopwatch;
 pub mod vector;

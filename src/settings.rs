@@ -61,13 +61,42 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The rows to render of a picture of this height, from the bottom.
+    pub fn rows_of(&self, height: u32) -> Range<u32> {
+        self.rows.clone().unwrap_or(0..height)
+    }
+
+    /// Several rays a pixel, if that was asked for; else one goes through its middle.
+    pub fn supersampling(&self) -> Option<Supersampling> {
+        (self.samples > 1).then_some(Supersampling {
+            samples: self.samples,
+            spread: self.jitter,
+        })
+    }
+
     /// How the pixels of a picture of this width are sampled, in the rows below `end`.
     pub fn sampling(&self, width: u32, end: u32) -> Jitter {
-        match (self.samples, self.jitter) {
-            (0 | 1, _) => Jitter::Once,
-            (samples, Spread::Hash) => Jitter::Hash(samples),
-            (samples, Spread::Course) => Jitter::Course(Course::new(width, end, samples)),
+        match self.supersampling() {
+            None => Jitter::Once,
+            Some(Supersampling { samples, spread }) => match spread {
+                Spread::Hash => Jitter::Hash(samples),
+                Spread::Course => Jitter::Course(Course::new(width, end, samples)),
+            },
         }
+    }
+
+    /// How the scene is looked at.
+    pub fn view(&self) -> View {
+        View {
+            screen_tolerance: self.screen_tolerance,
+            margin: self.supersampling().map_or(0.0, |_| 0.5),
+        }
+    }
+
+    /// Whether the GPU's pixels come with error bounds, so that it knows which of them it is sure of. Certified values
+    /// are the CPU's.
+    pub fn has_gpu_bounds(&self) -> bool {
+        self.precision == Precision::Certified && !self.values
     }
 
     /// The limits of a sample: where the values themselves are wanted, those above 1 count too.
@@ -80,6 +109,34 @@ impl Settings {
         Limits {
             enough,
             ..self.limits
+        }
+    }
+}
+
+/// Several rays a pixel, whose mean is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Supersampling {
+    /// How many: at least two.
+    pub samples: u32,
+    /// How they are spread.
+    pub spread: Spread,
+}
+
+/// How the scene is looked at, beyond what it says itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// τ: a hit on a plane counts only where its z is ≤ this; 0 in the notes.
+    pub screen_tolerance: f64,
+    /// How far from its pixel's center a ray may pass, in pixels: 0, or ½ with several samples.
+    pub margin: f64,
+}
+
+impl From<f64> for View {
+    /// The view with this screen tolerance, a ray a pixel.
+    fn from(screen_tolerance: f64) -> Self {
+        Self {
+            screen_tolerance,
+            margin: 0.0,
         }
     }
 }

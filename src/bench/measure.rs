@@ -26,6 +26,7 @@ use crate::scene::Scene;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::feature_set::FeatureSet;
 use crate::shader::pack::Packed;
+use crate::stopwatch::{Phase, Stopwatch};
 
 /// A scene at its final size, and how it is measured.
 pub struct Subject<'a> {
@@ -88,7 +89,7 @@ struct Frame {
     picture: Picture,
     verdicts: Vec<Stage>,
     report: render::Report,
-    /// Seconds, opening the device apart.
+    /// Seconds, opening and closing the device apart.
     seconds: f64,
 }
 
@@ -166,7 +167,7 @@ impl Subject<'_> {
         for _ in 0..self.repeat {
             let frame = self.frame(&settings, false)?;
             frames.push(frame.seconds);
-            kernels.push(frame.report.seconds.kernel);
+            kernels.push(frame.report.seconds.phases.get(Phase::Trace));
         }
         // The truth about t is this way's own.
         let hits: Vec<Seen> = self.hits.iter().map(|(seen, _)| *seen).collect();
@@ -174,7 +175,7 @@ impl Subject<'_> {
             picture: warm_up.picture,
             t: self.compared(&hits),
             doubtful_percent: None,
-            kernel: times(warm_up.report.seconds.kernel, kernels)?,
+            kernel: times(warm_up.report.seconds.phases.get(Phase::Trace), kernels)?,
             frame: times(warm_up.seconds, frames)?,
         })
     }
@@ -198,12 +199,19 @@ impl Subject<'_> {
             Err(render::Error::Gpu(error)) => return Err(error.into()),
             report => report?,
         };
-        let seconds = &report.seconds;
-        let opening = seconds.instance + seconds.device + seconds.selftest;
+        let opening: f64 = [
+            Phase::Instance,
+            Phase::Device,
+            Phase::Selftest,
+            Phase::Close,
+        ]
+        .map(|phase| report.seconds.phases.get(phase))
+        .iter()
+        .sum();
         Ok(Frame {
             picture: Picture { width, height, rgb },
             verdicts: stages,
-            seconds: seconds.total - opening,
+            seconds: report.seconds.total - opening,
             report,
         })
     }
@@ -224,10 +232,16 @@ impl Subject<'_> {
             band_rows: None,
         };
         let run = || -> Result<f64, Unmeasured> {
-            let times = bands::run(gpu, &pipeline, &frame, &|| false, &mut |_| {
-                ControlFlow::Continue(())
-            })?;
-            Ok(times.kernel)
+            let hand_on = &mut |_| ControlFlow::Continue(());
+            let watch = &mut Stopwatch::start();
+            Ok(bands::run(
+                gpu,
+                &pipeline,
+                &frame,
+                &|| false,
+                watch,
+                hand_on,
+            )?)
         };
         self.times(run()?, run)
     }
@@ -312,7 +326,7 @@ fn times(warm_up: f64, runs: Vec<f64>) -> Result<Times, Unmeasured> {
 /// A picture in plain f64, on all cores; the seconds of tracing, and of all.
 fn plain(scene: &Scene, settings: &Settings) -> (Picture, f64, f64) {
     let start = Instant::now();
-    let prepared = Prepared::<f64>::new(scene, settings.screen_tolerance);
+    let prepared = Prepared::<f64>::new(scene, settings.view());
     let limits = settings.sample_limits();
     let [width, height] = scene.camera.pixeldim;
     let mut rgb = vec![0; 3 * width as usize * height as usize];

@@ -123,11 +123,11 @@ impl WayReport {
 /// Times of a way, in seconds.
 #[derive(Debug, Clone, Serialize)]
 pub struct Seconds {
-    /// The dispatches of a picture, by the device's clock where it has one; on the CPU the tracing. The shader is compiled
-    /// and has run before.
+    /// The dispatches of a picture, by the device's clock where it has one; on the CPU the tracing. The shader is
+    /// compiled and has run before.
     pub kernel: Times,
-    /// From the scene to the picture's bytes in memory: preparing, composing, compiling, uploading, tracing, reading back,
-    /// deciding what is doubtful. Reading the file and opening the device are not in it.
+    /// From the scene to the picture's bytes in memory: preparing, composing, compiling, uploading, tracing, reading
+    /// back, deciding what is doubtful. Reading the file is not in it, nor are opening and closing the device.
     pub frame: Times,
     /// `plumb render` as a process of its own, seen from outside, with all caches of shaders and devices empty.
     pub cold: Option<Times>,

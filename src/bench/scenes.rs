@@ -54,7 +54,7 @@ pub struct BenchError {
 /// # Errors
 /// If a scene cannot be rendered on the CPU. What the GPU cannot do is in the report.
 pub fn bench(asked: &Asked, step: &mut dyn FnMut()) -> Result<Report, BenchError> {
-    let opened = gpu::device::open(None);
+    let opened = gpu::adapters::open(None);
     let gpu = opened.as_ref().map_err(ToString::to_string);
     let mut scenes = Vec::new();
     for (name, file, scene) in &asked.scenes {

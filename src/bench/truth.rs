@@ -1,5 +1,5 @@
-//! The truth that ways are measured against: the certified picture comes from `measure`; here are what primary rays hit and
-//! where, and how many rays there are.
+//! The truth that ways are measured against: the certified picture comes from `measure`; here are what primary rays hit
+//! and where, and how many rays there are.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -58,7 +58,7 @@ fn some_rows(scene: &Scene, most: u64) -> Vec<u32> {
 /// What the pixels of these rows see, row by row, from the left; and how far t may be off.
 #[must_use]
 pub fn hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<(Seen, f64)> {
-    let prepared = Prepared::<Bounded>::new(scene, settings.screen_tolerance);
+    let prepared = Prepared::<Bounded>::new(scene, settings.view());
     first_hits(&prepared, scene, rows, |t| {
         (t.value, t.error * Bounded::GROW)
     })
@@ -67,7 +67,7 @@ pub fn hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<(Seen, f64)
 /// The same in plain f64.
 #[must_use]
 pub fn plain_hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<Seen> {
-    let prepared = Prepared::<f64>::new(scene, settings.screen_tolerance);
+    let prepared = Prepared::<f64>::new(scene, settings.view());
     let hits = first_hits(&prepared, scene, rows, |t| (t, 0.0));
     hits.into_iter().map(|(seen, _)| seen).collect()
 }
@@ -111,8 +111,8 @@ pub struct Rays {
     pub pixels: u64,
 }
 
-/// Counts the rays that the scene asks for, in plain f64: whole trees, even where a pixel is white already. Where a pixel
-/// needs more than allowed, those counted until then.
+/// Counts the rays that the scene asks for, in plain f64: whole trees, even where a pixel is white already. Where a
+/// pixel needs more than allowed, those counted until then.
 #[must_use]
 pub fn rays(scene: &Scene, settings: &Settings) -> Rays {
     let [width, height] = scene.camera.pixeldim;
@@ -124,7 +124,7 @@ pub fn rays(scene: &Scene, settings: &Settings) -> Rays {
             pixels: u64::from(width) * u64::from(height),
         };
     }
-    let prepared = Prepared::<f64>::new(scene, settings.screen_tolerance);
+    let prepared = Prepared::<f64>::new(scene, settings.view());
     let limits = Limits {
         enough: f64::INFINITY,
         ..settings.limits

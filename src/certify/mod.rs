@@ -1,8 +1,10 @@
-//! Certified pixels, the host's side: the CPU decides what the GPU is not sure of, and checks some of what it is sure of.
+//! Certified pixels, the host's side: the CPU decides what the GPU is not sure of, and checks some of what it is sure
+//! of.
 //!
-//! Stands between the tracers (`gpu`, `cpu`) and `render`, which runs it band by band. [`lanes`] does on the CPU what the GPU does, [`pixels`] decides single pixels and
-//! whole bands on all cores, [`spot`] says which sure pixels of a band are computed again, [`trust`] which devices passed the self-test, [`Tally`] counts what decided
-//! how many, [`verdict`] has a colour for each.
+//! Stands between the tracers (`gpu`, `cpu`) and `render`, which runs it band by band. [`lanes`] does on the CPU what
+//! the GPU does, [`pixels`] decides single pixels and whole bands on all cores, [`spot`] says which sure pixels of a
+//! band are computed again, [`trust`] which devices passed the self-test, [`Tally`] counts what decided how many,
+//! [`verdict`] has a colour for each.
 
 pub mod lanes;
 pub mod pixels;

@@ -15,12 +15,14 @@ use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::prepare::View;
 use crate::scene::Scene;
+use crate::settings::Settings;
 
 /// Single pixels are handed to the cores in pieces of this many: small, because some take a thousand times as long as
 /// others, and those stand side by side.
 const PIECE: usize = 16;
 
-/// So few pixels are decided by who asks: where the GPU is the CPU, waking another thread takes longer, measured 1 to 20 ms.
+/// So few pixels are decided by who asks: where the GPU is the CPU, waking another thread takes longer, measured 1 to
+/// 20 ms.
 const FEW: usize = 128;
 
 /// What it takes to trace a pixel of a scene on the CPU.
@@ -32,36 +34,23 @@ pub struct Tracer<'a> {
     width: usize,
     /// Whether the values before quantising are wanted, to the last bit of f32.
     values: bool,
+    /// Whether bands tell what decided each pixel.
+    verdicts: bool,
     stop: &'a Stop<'a>,
     stages: OnceLock<Stages<'a>>,
 }
 
-/// What a band has besides its bytes.
-#[derive(Debug, Clone, Copy)]
-pub struct Wanted {
-    /// The values before quantising.
-    pub values: bool,
-    /// What decided each pixel.
-    pub verdicts: bool,
-}
-
 impl<'a> Tracer<'a> {
-    /// For pictures of a scene that are `width` pixels wide.
-    pub fn new(
-        scene: &'a Scene,
-        view: View,
-        limits: Limits,
-        jitter: &'a Jitter,
-        width: u32,
-        values: bool,
-    ) -> Self {
+    /// For the scene's picture as the settings ask for it, whose samples are spread by `jitter`.
+    pub fn new(scene: &'a Scene, settings: &Settings, jitter: &'a Jitter) -> Self {
         Self {
             scene,
-            view,
-            limits,
+            view: settings.view(),
+            limits: settings.sample_limits(),
             jitter,
-            width: width as usize,
-            values,
+            width: scene.camera.pixeldim[0] as usize,
+            values: settings.values,
+            verdicts: settings.verdicts,
             stop: &|| false,
             stages: OnceLock::new(),
         }
@@ -79,8 +68,8 @@ impl<'a> Tracer<'a> {
             .get_or_init(|| Stages::new(self.scene, self.view).with_values(self.values))
     }
 
-    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is `top`. Of
-    /// those of which something is known only the samples that are missing are traced, if that is enough.
+    /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is
+    /// `top`. Of those of which something is known only the samples that are missing are traced, if that is enough.
     pub fn pixels(
         &self,
         top: u32,
@@ -162,17 +151,12 @@ impl<'a> Tracer<'a> {
     }
 
     /// Traces a whole band; with `lanes`, eight pixels at once as far as those are sure.
-    pub fn band(
-        &self,
-        rows: Range<u32>,
-        wanted: Wanted,
-        lanes: Option<&Lanes>,
-    ) -> Result<(Band, Tally), Halt> {
+    pub fn band(&self, rows: Range<u32>, lanes: Option<&Lanes>) -> Result<(Band, Tally), Halt> {
         let (width, top) = (self.width, rows.end - 1);
         let pixels = width * rows.len();
         let mut rgb = vec![0; 3 * pixels];
-        let mut values = vec![[0.0; 3]; if wanted.values { pixels } else { 0 }];
-        let mut verdicts = vec![Stage::Gpu; if wanted.verdicts { pixels } else { 0 }];
+        let mut values = vec![[0.0; 3]; if self.values { pixels } else { 0 }];
+        let mut verdicts = vec![Stage::Gpu; if self.verdicts { pixels } else { 0 }];
         // Pieces of rows, small enough to share out, large enough not to cost.
         let piece = (pixels / (8 * rayon::current_num_threads()))
             .clamp(64, 8192)
@@ -210,8 +194,8 @@ impl<'a> Tracer<'a> {
         let band = Band {
             rows,
             rgb,
-            values: wanted.values.then_some(values),
-            verdicts: wanted.verdicts.then_some(verdicts),
+            values: self.values.then_some(values),
+            verdicts: self.verdicts.then_some(verdicts),
         };
         Ok((band, tally))
     }

@@ -1,8 +1,8 @@
-//! Which adapters are trusted with certified pixels: those that passed the self-test, once a process and, where there is a
-//! folder to remember it in, once a driver (if that tells its version).
+//! Which adapters are trusted with certified pixels: those that passed the self-test, once a process and, where there
+//! is a folder to remember it in, once a driver (if that tells its version).
 //!
-//! The folder holds one small file for each adapter and driver. It may be deleted at any time, and a file that cannot be
-//! read or written only means that the test is run again.
+//! The folder holds one small file for each adapter and driver. It may be deleted at any time, and a file that cannot
+//! be read or written only means that the test is run again.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -20,7 +20,8 @@ fn passed() -> MutexGuard<'static, BTreeSet<String>> {
     PASSED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Tests the device, unless it is known to pass. Returns what failed, if anything; that the test cannot be run is a failure.
+/// Tests the device, unless it is known to pass. Returns what failed, if anything; that the test cannot be run is a
+/// failure.
 pub fn doubts(gpu: &Gpu, folder: Option<&Path>) -> Option<String> {
     let note = note(gpu);
     // Another version of the driver must not pass for this one.
@@ -142,7 +143,7 @@ pub(crate) mod tests {
     #[test]
     fn a_device_is_tested_once_and_again_when_its_trust_is_revoked() {
         let folder = tempfile::tempdir().unwrap();
-        let mut gpu = crate::gpu::device::open(None).unwrap();
+        let mut gpu = crate::gpu::adapters::open(None).unwrap();
         gpu.identity += " of this test";
         gpu.tells_version = true;
         assert_eq!(doubts(&gpu, Some(folder.path())), None);

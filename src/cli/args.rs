@@ -10,6 +10,7 @@ use plumb::cpu::debug::Shown;
 use plumb::cpu::trace::Limits;
 use plumb::render::{Backend, Precision, Settings, Spread};
 use plumb::scene::Scene;
+use plumb::settings::Supersampling;
 
 use super::cache;
 use super::values::{Rows, path, rows, size, threads, tolerance};
@@ -36,7 +37,8 @@ pub(crate) struct PictureOptions {
         value_parser = clap::value_parser!(u32).range(1..=MOST_SAMPLES),
         long_help = "\
 Samples a pixel, 1 to 65536. 1 is a ray through its middle; N are N rays spread over it, and the mean of their colours \
-is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures. Where a floor or wall runs through the screen's edge, the samples beyond it meet nothing: \
+is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures. Where a floor or wall runs \
+through the screen's edge, the samples beyond it meet nothing: \
 put it a little farther out, or give --screen-tolerance."
     )]
     pub(crate) samples: u32,
@@ -58,7 +60,8 @@ put it a little farther out, or give --screen-tolerance."
         allow_negative_numbers = true,
         long_help = "\
 Mirror images and what is seen through transparent things end where the path from the viewpoint, in world units along \
-the rays, is longer than D. 0 shows neither; the first ray is as long as it takes. It matters only in scenes with lights."
+the rays, is longer than D. 0 shows neither; the first ray is as long as it takes. It matters only in scenes with \
+lights."
     )]
     pub(crate) max_path: f64,
     /// A sample that needs more rays than N is an error: mirrors and transparent things multiply them
@@ -106,12 +109,13 @@ impl PictureOptions {
     /// Refuses what would take memory without end; `scene` has its final size.
     pub(crate) fn check(&self, scene: &Scene) -> Result<()> {
         let width = scene.camera.pixeldim[0];
-        let course = self.samples > 1 && self.jitter == JitterName::Course;
-        if course && u64::from(width) * u64::from(self.samples) > MOST_COURSE_SAMPLES {
+        if let Some(Supersampling { samples, spread }) = self.settings().supersampling()
+            && spread == Spread::Course
+            && u64::from(width) * u64::from(samples) > MOST_COURSE_SAMPLES
+        {
             bail!(
-                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {} samples \
-                 has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory",
-                self.samples
+                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {samples} \
+                 samples has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory"
             );
         }
         Ok(())
@@ -160,13 +164,14 @@ written beside and renamed when it is whole; devices, pipes and links are writte
         long_help = "\
 What is asked of the bytes.
 
-certified: every byte is the one that the scene means in exact arithmetic, the same from every GPU, driver and CPU. The \
-GPU tells with each pixel whether it is sure of it; those that it is not sure of, well under one in a hundred as a rule, \
-are decided on the CPU, in the end exactly. The GPU is tested before it is trusted, and some of the pixels that it is \
+certified: every byte is the one that the scene means in exact arithmetic, the same from every GPU, driver and CPU. \
+The GPU tells with each pixel whether it is sure of it; those that it is not sure of, well under one in a hundred as a \
+rule, are decided on the CPU, in the end exactly. The GPU is tested before it is trusted, and some of the pixels that \
+it is \
 sure of are computed again. EXR holds the f32 nearest each exact value; all of it is computed on the CPU.
 
-fast: the GPU's f32 as it comes. A few bytes in a hundred thousand differ by one, which ones depends on the driver. With \
---backend cpu there is no difference."
+fast: the GPU's f32 as it comes. A few bytes in a hundred thousand differ by one, which ones depends on the driver. \
+With --backend cpu there is no difference."
     )]
     pub(crate) precision: PrecisionName,
     /// Exit 1 if any pixel is presumed to lie on a border, not proven
@@ -196,8 +201,8 @@ A second picture of the same size, .png or .ppm, that shows what decided each pi
         value_name = "N",
         value_parser = clap::value_parser!(u32).range(1..),
         long_help = "\
-Rows of a band, the piece in which a picture is rendered and written. Without it bands are as high as takes a moment. It \
-changes no byte, only memory and time; a band has fewer rows where so many would not fit."
+Rows of a band, the piece in which a picture is rendered and written. Without it bands are as high as takes a moment. \
+It changes no byte, only memory and time; a band has fewer rows where so many would not fit."
     )]
     pub(crate) band_rows: Option<u32>,
     /// The notes' listing of pixels on stderr: any of pix, hit, drgb, irgb, offset
@@ -231,7 +236,8 @@ impl RenderOptions {
                 "--adapter picks a GPU adapter, and --backend cpu uses none: leave one of them out"
             );
         }
-        if self.picture.samples > 1 && !self.debug.is_empty() {
+        let picture = self.picture.settings();
+        if picture.supersampling().is_some() && !self.debug.is_empty() {
             bail!(
                 "--debug lists the ray through the middle of a pixel, and --samples takes others: leave one of them out"
             );
@@ -251,7 +257,7 @@ impl RenderOptions {
             verdicts: self.verdicts.is_some(),
             band_rows: self.band_rows,
             cache: cache::folder(),
-            ..self.picture.settings()
+            ..picture
         })
     }
 

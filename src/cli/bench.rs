@@ -139,7 +139,8 @@ fn scene(path: &Path, args: &Args) -> Result<(String, PathBuf, Scene)> {
     let [width, height] = scene.camera.pixeldim;
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
         bail!(
-            "{}: pictures of {width} × {height} pixels are compared whole, and {MOST_PIXELS} pixels are the most: give a smaller --size",
+            "{}: pictures of {width} × {height} pixels are compared whole, and {MOST_PIXELS} pixels are the most: give \
+            a smaller --size",
             path.display()
         );
     }

@@ -12,8 +12,8 @@ use super::{Answer, say, source};
 /// What `plumb check` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Every error of every file is told, with its place and what would mend it. Good files are listed on stdout, errors go to \
-stderr; exit 2 if any file is bad. --json lists both on stdout.")]
+Every error of every file is told, with its place and what would mend it. Good files are listed on stdout, errors go \
+to stderr; exit 2 if any file is bad. --json lists both on stdout.")]
 pub(crate) struct Args {
     /// Scene files; `-` is stdin
     #[arg(required = true, value_name = "SCENE")]

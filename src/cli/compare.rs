@@ -13,8 +13,8 @@ use super::{Answer, SOFTWARE, picture, say};
 /// What `plumb compare` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Pictures are read as PPM, PNG or EXR, whatever their names say; EXR is quantised as a rendering is. Rows count from the \
-bottom. Exit 0: the same; 1: different pixels or sizes; 2: one cannot be read.")]
+Pictures are read as PPM, PNG or EXR, whatever their names say; EXR is quantised as a rendering is. Rows count from \
+the bottom. Exit 0: the same; 1: different pixels or sizes; 2: one cannot be read.")]
 pub(crate) struct Args {
     /// One picture
     a: PathBuf,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use plumb::gpu::device::{AdapterSummary, adapters};
+use plumb::gpu::adapters::{self, AdapterSummary};
 use plumb::probe::digits::count;
 use plumb::render::install_hint;
 use serde_json::json;
@@ -13,9 +13,10 @@ use super::{Answer, SOFTWARE, args, say};
 /// What `plumb doctor` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Each is put through the self-test: \
-hard operands for + - * / sqrt, rounding, conversions, comparisons, exact sums and products behind a barrier. Exit 1: there \
-is none that can be used or trusted, and the CPU renders.")]
+Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Each is put through the \
+self-test: hard operands for + - * / sqrt, rounding, conversions, comparisons, exact sums and products behind a \
+barrier. Exit 1: \
+there is none that can be used or trusted, and the CPU renders.")]
 pub(crate) struct Args {
     /// Print the same as JSON
     #[arg(long)]
@@ -24,7 +25,7 @@ pub(crate) struct Args {
 
 /// Lists the adapters.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
-    let adapters = adapters();
+    let adapters = adapters::list();
     let chosen = adapters
         .iter()
         .position(|adapter| adapter.problem.is_none());

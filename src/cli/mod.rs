@@ -47,8 +47,8 @@ const INTERRUPTED: i32 = 130;
 const LONG_ABOUT: &str = "\
 plumb is a ray tracer on the GPU: a scene file in, a picture out. Without a GPU the same tracer runs on the CPU.
 
-Without a command, plumb is a filter, as in the course notes: it reads a scene from stdin, lists the model on stderr and \
-writes the picture to stdout as PPM.";
+Without a command, plumb is a filter, as in the course notes: it reads a scene from stdin, lists the model on stderr \
+and writes the picture to stdout as PPM.";
 
 const AFTER_HELP: &str =
     "See `plumb --help` for examples and the scene language, `plumb COMMAND --help` for a command.";

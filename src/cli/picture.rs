@@ -5,8 +5,8 @@ use std::io;
 use plumb::image::{Finished, Format, Metadata, Output, OutputError, Target};
 use plumb::render::Band;
 
-/// The picture on its way out. A file is opened before anything is rendered, so that a name that cannot be written costs
-/// no time; stdout, which cannot fail to open, when there is something to write: an error before leaves it empty.
+/// The picture on its way out. A file is opened before anything is rendered, so that a name that cannot be written
+/// costs no time; stdout, which cannot fail to open, when there is something to write: an error before leaves it empty.
 pub(crate) struct Picture {
     target: Target,
     format: Format,

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use anyhow::{Result, bail};
-use plumb::gpu::device;
+use plumb::gpu::adapters;
 use plumb::gpu::single::Single;
 use plumb::probe::{AskGpu, Facts, Options, Probe, Verdict};
 use plumb::render::Settings;
@@ -120,7 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         cache: cache::folder(),
         ..args.picture.settings()
     };
-    let gpu = device::open(settings.adapter.as_deref());
+    let gpu = adapters::open(settings.adapter.as_deref());
     let probe = Probe::new(&scene, &settings, gpu.as_ref());
     let name = source::name(&args.scene);
     if args.json {

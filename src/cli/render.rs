@@ -1,4 +1,5 @@
-//! `plumb render`, and the filter use `plumb < scene > picture.ppm`: scene in, picture out, and a word about how it went.
+//! `plumb render`, and the filter use `plumb < scene > picture.ppm`: scene in, picture out, and a word about how it
+//! went.
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
@@ -208,7 +209,7 @@ impl<'a> Job<'a> {
     /// Opens the picture, and the one of its verdicts if it was asked for.
     fn open(&self, target: &Target, format: Format, settings: &Settings) -> Result<Outputs> {
         let [width, height] = self.scene.camera.pixeldim;
-        let rows = settings.rows.clone().unwrap_or(0..height).len() as u32;
+        let rows = settings.rows_of(height).len() as u32;
         let open = |target: &Target, format| {
             Picture::open(target, format, width, rows, self.metadata(settings))
         };
@@ -245,7 +246,7 @@ impl<'a> Job<'a> {
 
     fn render(&self, settings: &Settings, outputs: &mut Outputs) -> Result<Report, render::Error> {
         let [_, height] = self.scene.camera.pixeldim;
-        let rows = settings.rows.clone().unwrap_or(0..height);
+        let rows = settings.rows_of(height);
         let mut progress = Progress::new(rows.len() as u64, self.talks());
         let rendered = render::render(&self.scene, settings, &mut |band| {
             outputs.write(band)?;
@@ -289,7 +290,7 @@ impl<'a> Job<'a> {
         let Some(shown) = self.options.shown() else {
             return Ok(());
         };
-        let prepared = Prepared::new(&self.scene, settings.screen_tolerance);
+        let prepared = Prepared::new(&self.scene, settings.view());
         let mut limits = settings.sample_limits();
         if shown.drgb {
             // A picture is done with a sample at full brightness; this asks how bright it is.
@@ -300,7 +301,7 @@ impl<'a> Job<'a> {
         let listed = list_pixels(
             &self.scene,
             &prepared,
-            &Stages::new(&self.scene, settings.screen_tolerance.into()),
+            &Stages::new(&self.scene, settings.view()),
             &limits,
             start..end,
             shown,

@@ -80,7 +80,8 @@ pub(crate) fn diagnosed(diagnostics: &Diagnostics) {
     talk(&diagnostics.render(color()));
 }
 
-/// The error and its causes in one line. Some errors of libraries repeat their cause in their own text: it is said once.
+/// The error and its causes in one line. Some errors of libraries repeat their cause in their own text: it is said
+/// once.
 pub(crate) fn causes(error: &anyhow::Error) -> String {
     let mut line = String::new();
     for cause in error.chain() {

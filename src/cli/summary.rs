@@ -9,7 +9,7 @@ use plumb::render::{Backend, Precision, Report};
 
 use super::Answer;
 
-/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6, 256 bits), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
+/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
 pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> String {
     let [start, end] = report.rows;
     let mut size = format!("{}×{}", report.width, end - start);
@@ -46,7 +46,7 @@ fn decided(report: &Report) -> String {
         (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
         (Precision::Certified, Backend::Gpu, _) => {
             let percent = report.refined_percent;
-            let samples = if report.samples > 1 {
+            let samples = if report.jitter.is_some() {
                 let percent = report.refined_samples_percent;
                 format!(" ({percent:.2} % of the samples)")
             } else {
@@ -63,7 +63,8 @@ pub(crate) fn told(report: &Report) -> Vec<String> {
     let mut lines: Vec<String> = report.fallback.iter().cloned().collect();
     if let Some(revoked) = &report.revoked {
         lines.push(format!(
-            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb doctor`"
+            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb \
+            doctor`"
         ));
     }
     if report.presumed > 0 {
@@ -94,7 +95,7 @@ pub(crate) fn answer(strict: bool, report: &Report) -> Answer {
 mod tests {
     use std::path::Path;
 
-    use plumb::render::{Settings, render};
+    use plumb::render::{Settings, Spread, render};
     use plumb::scene::load_from;
 
     use super::*;
@@ -151,6 +152,7 @@ mod tests {
             "{text}"
         );
         report.samples = 16;
+        report.jitter = Some(Spread::Hash);
         report.refined_samples_percent = 0.021;
         let text = line(&report);
         assert!(

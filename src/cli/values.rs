@@ -35,7 +35,8 @@ impl Rows {
         let Self { start, end } = self;
         if let Some(end) = end.filter(|end| *end > height) {
             bail!(
-                "--rows {start}..{end}: the picture has {height} rows, so B is at most {height} (rows count from 0 at the bottom)"
+                "--rows {start}..{end}: the picture has {height} rows, so B is at most {height} (rows count from 0 at \
+                the bottom)"
             );
         }
         if start >= height {
@@ -51,8 +52,8 @@ impl Rows {
 /// `0..120`, `..120`, `40..`.
 pub(crate) fn rows(text: &str) -> Result<Rows, String> {
     let teach = || {
-        "say the first row and the row after the last, from 0 at the bottom, like 0..120; ..120 starts at the bottom, 40.. \
-         ends at the top"
+        "say the first row and the row after the last, from 0 at the bottom, like 0..120; ..120 starts at the bottom, \
+        40.. ends at the top"
             .to_owned()
     };
     let (a, b) = text

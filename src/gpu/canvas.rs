@@ -1,5 +1,5 @@
-//! A picture that stays on the GPU, for a window that shows it: what [`bands`](super::bands) make is copied here where it is
-//! made, and what the CPU decides is put into its place.
+//! A picture that stays on the GPU, for a window that shows it: what [`bands`](super::bands) make is copied here where
+//! it is made, and what the CPU decides is put into its place.
 
 use wgpu::util::DeviceExt as _;
 
@@ -50,8 +50,8 @@ impl Canvas {
         Ok(Self { pixels, size })
     }
 
-    /// Takes over `size` pixels, whose rows are `pitch` words long, from a byte of a buffer on. They go to column `at[0]` of
-    /// the rows below row `at[1]`, which is counted from the bottom, as everywhere else.
+    /// Takes over `size` pixels, whose rows are `pitch` words long, from a byte of a buffer on. They go to column
+    /// `at[0]` of the rows below row `at[1]`, which is counted from the bottom, as everywhere else.
     pub(super) fn take(
         &self,
         encoder: &mut wgpu::CommandEncoder,

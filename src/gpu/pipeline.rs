@@ -2,7 +2,6 @@
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
 
 use wgpu::util::DeviceExt as _;
 
@@ -29,25 +28,19 @@ pub struct Pipeline {
     pub partial_words: u32,
     /// The camera, where the shader reads it from its job.
     pub camera: Option<CameraNumbers>,
-    /// Seconds for compiling, and for packing and uploading.
-    pub seconds: [f64; 2],
-    buffers: Vec<(u32, wgpu::Buffer)>,
+    buffers: SceneBuffers,
 }
 
-impl Pipeline {
-    /// Compiles `wgsl`, composed for `packed` with the features of `set`, and uploads the scene.
-    pub fn new(gpu: &Gpu, packed: &Packed, set: &FeatureSet, wgsl: &str) -> Result<Self, GpuError> {
-        Self::with(gpu, packed, set, || gpu.compile(wgsl, "main"))
-    }
+/// The packed scene in buffers, by the numbers of their bindings.
+#[derive(Debug)]
+pub struct SceneBuffers(Vec<(u32, wgpu::Buffer)>);
 
-    /// The same, with a shader that is compiled, or was.
-    pub(crate) fn with(
-        gpu: &Gpu,
-        packed: &Packed,
-        set: &FeatureSet,
-        compile: impl FnOnce() -> Result<wgpu::ComputePipeline, GpuError>,
-    ) -> Result<Self, GpuError> {
-        let start = Instant::now();
+impl SceneBuffers {
+    /// The buffers that a shader with these features reads.
+    ///
+    /// # Errors
+    /// If the device does not allow so large a buffer, or so many.
+    pub fn new(gpu: &Gpu, packed: &Packed, set: &FeatureSet) -> Result<Self, GpuError> {
         let features = set.features();
         let has = |feature: Feature| features.contains(&feature);
         let buffers = upload(gpu, packed, &features)?;
@@ -61,20 +54,35 @@ impl Pipeline {
                 adapter: gpu.name.clone(),
             });
         }
-        let upload_seconds = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let pipeline = compile()?;
-        let compile_seconds = start.elapsed().as_secs_f64();
-        Ok(Self {
+        Ok(Self(buffers))
+    }
+}
+
+impl Pipeline {
+    /// Compiles `wgsl`, composed for `packed` with the features of `set`, and uploads the scene.
+    pub fn new(gpu: &Gpu, packed: &Packed, set: &FeatureSet, wgsl: &str) -> Result<Self, GpuError> {
+        let buffers = SceneBuffers::new(gpu, packed, set)?;
+        Ok(Self::of(gpu.compile(wgsl, "main")?, buffers, packed, set))
+    }
+
+    /// The compiled shader with its scene's buffers.
+    pub(crate) fn of(
+        pipeline: wgpu::ComputePipeline,
+        buffers: SceneBuffers,
+        packed: &Packed,
+        set: &FeatureSet,
+    ) -> Self {
+        let features = set.features();
+        let has = |feature: Feature| features.contains(&feature);
+        Self {
             pipeline,
             across: if has(Feature::Quad) { QUAD } else { 1 },
             pixel_bytes: if set.values { 16 } else { 4 },
             offsets: if has(Feature::Course) { set.samples } else { 0 },
             partial_words: set.partial_words(),
             camera: has(Feature::Moving).then_some(packed.camera.numbers),
-            seconds: [compile_seconds, upload_seconds],
             buffers,
-        })
+        }
     }
 
     /// Binds the scene, a job, a buffer for its pixels, and one for the offsets of its samples if they are read.
@@ -90,6 +98,7 @@ impl Pipeline {
             .chain(offsets.map(|offsets| (OFFSETS, offsets)));
         let scene = self
             .buffers
+            .0
             .iter()
             .map(|(binding, buffer)| (*binding, buffer));
         gpu.bind(&self.pipeline, &own.chain(scene).collect::<Vec<_>>())

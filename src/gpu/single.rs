@@ -80,8 +80,8 @@ impl SinglePipeline {
         }))
     }
 
-    /// Pixel (x, y), counted from the bottom left; None where the GPU leaves it to the CPU before it has a value. `gpu` is
-    /// the device that it was compiled for.
+    /// Pixel (x, y), counted from the bottom left; None where the GPU leaves it to the CPU before it has a value.
+    /// `gpu` is the device that it was compiled for.
     ///
     /// # Errors
     /// As any rendering on the GPU.

@@ -58,7 +58,7 @@ impl Metadata {
     /// picture is the same file.
     pub fn of(software: &str, name: &str, scene: &Scene, settings: &Settings) -> Self {
         let [width, height] = scene.camera.pixeldim;
-        let rows = settings.rows.clone().unwrap_or(0..height);
+        let rows = settings.rows_of(height);
         let entry = |key: &str, text: String| (key.to_owned(), text);
         let mut entries = vec![
             entry("Software", software.to_owned()),
@@ -75,10 +75,10 @@ impl Metadata {
                 format!("{:?}", settings.precision).to_lowercase(),
             ),
         ];
-        if settings.samples > 1 {
+        if let Some(several) = settings.supersampling() {
             entries.push(entry(
                 "plumb:jitter",
-                format!("{:?}", settings.jitter).to_lowercase(),
+                format!("{:?}", several.spread).to_lowercase(),
             ));
         }
         if !scene.lights.is_empty() {

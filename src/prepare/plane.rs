@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::camera::{self, origin, over_pixels, step};
 use super::extent::{Rectangle, along_sides};
-use super::view::View;
 use crate::real::Real;
 use crate::real::rational::{
     Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub,
 };
 use crate::scene;
+use crate::settings::View;
 
 /// A plane that some pixel's ray can hit.
 ///

@@ -12,10 +12,10 @@ use super::plane::Plane;
 use super::sphere::Sphere;
 use super::surface::Surface;
 use super::tiles::{self, Tiles};
-use super::view::View;
 use super::world::World;
 use crate::real::Real;
 use crate::scene::{Scene, Shape, Texels};
+use crate::settings::View;
 
 /// A scene made ready for tracing rays from its viewpoint, in the number type `R`.
 #[derive(Debug, Clone)]

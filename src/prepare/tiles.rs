@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 use super::camera::Camera;
 use super::sphere::Sphere;
-use super::view::View;
 use crate::real::Real;
 use crate::real::rational::two_to;
 use crate::scene::{Scene, Shape};
+use crate::settings::View;
 
 /// From so many objects on a ray does not ask every sphere. (Fewer stand in the text of the GPU's shader.)
 pub const WORTHWHILE: usize = 33;

@@ -11,7 +11,7 @@ use super::newest::{Newest, Taker, newest};
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::gpu::device::Gpu;
-use crate::prepare::{Prepared, View};
+use crate::prepare::Prepared;
 use crate::probe::{self, AskGpu, Probe};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -160,8 +160,7 @@ fn explain(probe: &Probe<'_>, name: &str, pixel: [u32; 2], options: probe::Optio
 /// What each pixel of the scene's picture shows, as f64 has it: numbers of objects from 1, 0 is nothing; rows from the top.
 /// None if it is to be given up.
 fn objects(scene: &Scene, settings: &Settings, stop: impl Fn() -> bool + Sync) -> Option<Vec<u32>> {
-    let view = View::new(settings.screen_tolerance, settings.samples);
-    let prepared = Prepared::<f64>::new(scene, view);
+    let prepared = Prepared::<f64>::new(scene, settings.view());
     let [width, height] = scene.camera.pixeldim;
     let mut objects = vec![0; width as usize * height as usize];
     let rows = objects.par_chunks_mut(width as usize);

@@ -35,7 +35,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui;
 use eframe::egui_wgpu;
 
-use crate::gpu::{GpuError, device};
+use crate::gpu::{GpuError, adapters};
 use crate::settings::Settings;
 use app::App;
 use shell::Shell;
@@ -86,7 +86,7 @@ pub enum PreviewError {
 /// # Errors
 /// Any [`PreviewError`].
 pub fn run(options: Options) -> Result<(), PreviewError> {
-    let opened = device::open_for_window(options.settings.adapter.as_deref());
+    let opened = adapters::open_for_window(options.settings.adapter.as_deref());
     let opened = opened.map_err(PreviewError::NoGpu)?;
     let gpu = Arc::new(opened.gpu);
     let setup = egui_wgpu::WgpuSetupExisting {

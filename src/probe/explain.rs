@@ -78,7 +78,7 @@ impl Pixel<'_, '_> {
             Err(fault) => return Ok(Err(fault)),
         };
         line(to, "colour", triple(components(color)))?;
-        if self.prepared.world.is_some() || settings.samples > 1 {
+        if self.prepared.world.is_some() || settings.supersampling().is_some() {
             line(
                 to,
                 "times 255",

@@ -30,7 +30,6 @@ use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::single::{Single, SinglePipeline};
 use crate::jitter::{Jitter, Sampling};
-use crate::prepare::View;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::shader::pack::Packed;
@@ -115,13 +114,12 @@ impl<'a> Probe<'a> {
     /// For `scene`, rendered as `settings` say, certified; what they say of rows, threads and the tracer does not matter.
     /// `gpu` is the device that is asked, or why there is none.
     pub fn new(scene: &'a Scene, settings: &Settings, gpu: Result<&'a Gpu, &'a GpuError>) -> Self {
-        let view = View::new(settings.screen_tolerance, settings.samples);
         Self {
             scene,
             limits: settings.sample_limits(),
             settings: settings.clone(),
             gpu,
-            stages: Stages::new(scene, view),
+            stages: Stages::new(scene, settings.view()),
             jitter: RefCell::new(Rows {
                 jitter: settings.sampling(scene.camera.pixeldim[0], 0),
                 end: 0,
@@ -187,7 +185,7 @@ impl<'a> Probe<'a> {
     fn single(&self, x: u32, y: u32) -> Option<Single> {
         let gpu = self.gpu.ok()?;
         let compiled = self.single.get_or_init(|| {
-            if self.settings.samples > 1 {
+            if self.settings.supersampling().is_some() {
                 return None;
             }
             let packed = Packed::prepared(self.stages.bounded(), self.scene, &self.settings);

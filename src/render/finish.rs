@@ -1,10 +1,11 @@
-//! What becomes of a band that the GPU rendered, while the next ones are rendered: its doubtful pixels are decided on the
-//! CPU, some of its sure ones are computed again, and it is handed on.
+//! What becomes of a band that the GPU rendered, while the next ones are rendered: its doubtful pixels are decided on
+//! the CPU, some of its sure ones are computed again, and it is handed on.
 
 use std::hash::{DefaultHasher, Hasher as _};
 use std::time::Instant;
 
-use super::{Emit, Error};
+use super::report::{Beside, Done};
+use super::{Backend, Emit, Error, Settings};
 use crate::certify::pixels::Tracer;
 use crate::certify::spot::spots;
 use crate::certify::{Stage, Tally};
@@ -19,15 +20,15 @@ pub(super) struct Finish<'a, 's, 'e> {
     certified: bool,
     verdicts: bool,
     /// What decided the pixels handed on.
-    pub(super) tally: Tally,
+    tally: Tally,
     /// Sure pixels that were computed again, and were right.
-    pub(super) spot_checks: u64,
+    spot_checks: u64,
     /// Number of bands handed on.
-    pub(super) bands: u32,
-    /// Seconds for doubtful pixels, for spot checks, and in `emit`.
-    pub(super) seconds: [f64; 3],
+    bands: u32,
+    /// What that took.
+    beside: Beside,
     /// What was handed on so far.
-    pub(super) digest: Digest,
+    digest: Digest,
 }
 
 /// Why no more bands are taken.
@@ -80,40 +81,65 @@ impl Digest {
 }
 
 impl<'a, 's, 'e> Finish<'a, 's, 'e> {
-    pub(super) fn new(
-        tracer: &'a Tracer<'s>,
-        emit: &'a mut Emit<'e>,
-        certified: bool,
-        verdicts: bool,
-    ) -> Self {
+    pub(super) fn new(tracer: &'a Tracer<'s>, emit: &'a mut Emit<'e>, settings: &Settings) -> Self {
         Self {
             tracer,
             emit,
-            certified,
-            verdicts,
+            certified: settings.has_gpu_bounds(),
+            verdicts: settings.verdicts,
             tally: Tally::default(),
             spot_checks: 0,
             bands: 0,
-            seconds: [0.0; 3],
+            beside: Beside::default(),
             digest: Digest::default(),
         }
     }
 
+    /// What came of it, and what was handed on.
+    pub(super) fn end(self) -> (Done, Digest) {
+        let done = Done {
+            backend: Backend::Gpu,
+            spot_checks: self.spot_checks,
+            beside: self.beside,
+            ..Done::on_cpu(self.tally, self.bands)
+        };
+        (done, self.digest)
+    }
+
     /// Finishes a band and hands it on; not before its sure pixels were checked.
     pub(super) fn band(&mut self, rendered: Rendered) -> Result<(), Stop> {
+        let start = Instant::now();
+        let (mut band, alone) = self.refine(rendered)?;
+        self.beside.refine += start.elapsed().as_secs_f64();
+        if self.certified {
+            let start = Instant::now();
+            self.check(&mut band, &alone)?;
+            self.beside.spot_checks += start.elapsed().as_secs_f64();
+        }
+        let start = Instant::now();
+        (self.emit)(&band)?;
+        if self.certified {
+            self.digest.add(&band);
+        }
+        self.beside.emit += start.elapsed().as_secs_f64();
+        self.bands += 1;
+        Ok(())
+    }
+
+    /// Decides the doubtful pixels. Returns the places of those of them of which the GPU has no part.
+    fn refine(&mut self, rendered: Rendered) -> Result<(Band, Vec<u32>), Stop> {
         let Rendered {
             mut band,
             doubtful,
             partials,
         } = rendered;
         let pixels = band.rgb.len() / 3;
-        let top = band.rows.end - 1;
-        let start = Instant::now();
-        let (decided, tally) = self.tracer.pixels(top, &doubtful, &partials)?;
+        let (decided, tally) = self
+            .tracer
+            .pixels(band.rows.end - 1, &doubtful, &partials)?;
         if self.verdicts {
             band.verdicts = Some(vec![Stage::Gpu; pixels]);
         }
-        // Those that owe nothing to the GPU; of the others its samples are worth a check.
         let mut alone = Vec::new();
         for (place, decided) in doubtful.iter().zip(decided) {
             *three(&mut band, *place) = decided.bytes;
@@ -127,35 +153,28 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
                 alone.push(*place);
             }
         }
-        let counted = std::mem::take(&mut self.tally).merge(tally);
-        self.tally = counted;
+        self.tally = std::mem::take(&mut self.tally).merge(tally);
         self.tally.add(Stage::Gpu, (pixels - doubtful.len()) as u64);
-        self.seconds[0] += start.elapsed().as_secs_f64();
-        if self.certified {
-            let start = Instant::now();
-            let width = (pixels / band.rows.len()) as u32;
-            let places = spots(width, &band.rows, &alone);
-            let (decided, _) = self.tracer.pixels(top, &places, &Partials::default())?;
-            for (place, decided) in places.iter().zip(decided) {
-                let gpu = three(&mut band, *place);
-                if *gpu != decided.bytes {
-                    return Err(Stop::Wrong(Wrong {
-                        at: [place % width, top - place / width],
-                        gpu: *gpu,
-                        cpu: decided.bytes,
-                    }));
-                }
+        Ok((band, alone))
+    }
+
+    /// Computes some pixels that the GPU has a part in again; those that the CPU decided alone are not worth a check.
+    fn check(&mut self, band: &mut Band, alone: &[u32]) -> Result<(), Stop> {
+        let top = band.rows.end - 1;
+        let width = (band.rgb.len() / 3 / band.rows.len()) as u32;
+        let places = spots(width, &band.rows, alone);
+        let (decided, _) = self.tracer.pixels(top, &places, &Partials::default())?;
+        for (place, decided) in places.iter().zip(decided) {
+            let gpu = *three(band, *place);
+            if gpu != decided.bytes {
+                return Err(Stop::Wrong(Wrong {
+                    at: [place % width, top - place / width],
+                    gpu,
+                    cpu: decided.bytes,
+                }));
             }
-            self.spot_checks += places.len() as u64;
-            self.seconds[1] += start.elapsed().as_secs_f64();
         }
-        let start = Instant::now();
-        (self.emit)(&band)?;
-        self.seconds[2] += start.elapsed().as_secs_f64();
-        if self.certified {
-            self.digest.add(&band);
-        }
-        self.bands += 1;
+        self.spot_checks += places.len() as u64;
         Ok(())
     }
 }

@@ -3,23 +3,24 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::mpsc;
 use std::thread;
-use std::time::Instant;
 
+use super::choice::Choice;
 use super::finish::{Digest, Finish, Stop, Wrong};
-use super::{Backend, Emit, Error, Live, Report, Settings};
+use super::report::Done;
+use super::{Backend, Beside, Emit, Error, Live, Settings};
 use crate::certify::lanes::Lanes;
-use crate::certify::pixels::{Tracer, Wanted};
+use crate::certify::pixels::Tracer;
 use crate::certify::{Tally, trust};
 use crate::frame::Band;
-use crate::gpu::pipeline::Pipeline;
+use crate::gpu::pipeline::{Pipeline, SceneBuffers};
 use crate::gpu::{GpuError, bands};
 use crate::jitter::Jitter;
 use crate::scene::Scene;
-use crate::settings::Precision;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::constants::LOOP_ITERATIONS;
 use crate::shader::feature_set::FeatureSet;
 use crate::shader::pack::Packed;
+use crate::stopwatch::{Phase, Stopwatch};
 
 /// Everything that a tracer needs to know.
 pub(super) struct Job<'a> {
@@ -34,44 +35,58 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Renders on the GPU; pixels that it leaves undecided are decided on the CPU, band by band, while the next bands are
-    /// rendered. Where it turns out to be wrong all is done again on the CPU.
-    pub(super) fn on_gpu(
+    /// Renders on the tracer that was chosen; on the CPU where the scene turns out to be too much for the GPU, if any
+    /// tracer will do.
+    pub(super) fn run(
+        &self,
+        choice: &Choice<Live<'_>>,
+        emit: &mut Emit<'_>,
+        watch: &mut Stopwatch,
+    ) -> Result<Done, Error> {
+        let fallback = match choice {
+            Choice::Cpu(why) => why.clone(),
+            Choice::Gpu(live) => match self.on_gpu(live, emit, watch) {
+                // Found before the first band, so nothing is rendered twice.
+                Err(Error::Gpu(
+                    error @ (GpuError::TooMany { .. }
+                    | GpuError::TooLarge { .. }
+                    | GpuError::TooManyBuffers { .. }),
+                )) if self.settings.backend == Backend::Auto => {
+                    Some(format!("{error}, so the CPU renders"))
+                }
+                done => return done,
+            },
+        };
+        Ok(Done {
+            fallback,
+            ..self.on_cpu(emit, watch)?
+        })
+    }
+
+    /// Renders on the GPU; pixels that it leaves undecided are decided on the CPU, band by band, while the next bands
+    /// are rendered. Where it turns out to be wrong all is done again on the CPU.
+    fn on_gpu(
         &self,
         live: &Live<'_>,
         emit: &mut Emit<'_>,
-        report: &mut Report,
-    ) -> Result<(), Error> {
-        let gpu = live.gpu;
-        let start = Instant::now();
+        watch: &mut Stopwatch,
+    ) -> Result<Done, Error> {
         // Prepared once, for the GPU and for the pixels that the CPU decides.
         let stages = self.on_threads(|| self.tracer.stages());
+        watch.lap(Phase::Prepare);
         let packed = Packed::prepared(stages.bounded(), self.scene, self.settings);
         let (found, allowed) = (packed.loop_iterations(), LOOP_ITERATIONS);
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
         }
-        let certified = self.settings.precision == Precision::Certified;
-        if let (true, Some(reason)) = (certified, packed.unprovable) {
-            report.fallback = Some(format!(
-                "{reason} for f32 with error bounds, so the CPU renders"
-            ));
-            return self.on_cpu(emit, report);
+        if let (true, Some(reason)) = (self.settings.has_gpu_bounds(), packed.unprovable) {
+            let fallback = format!("{reason} for f32 with error bounds, so the CPU renders");
+            return Ok(Done {
+                fallback: Some(fallback),
+                ..self.on_cpu(emit, watch)?
+            });
         }
-        let mut features = FeatureSet::new(&packed, self.settings, gpu.lanes);
-        if live.compiled.is_some() && !certified {
-            features = features.while_moving();
-        }
-        let wgsl = compose(&packed, &features, Entry::Picture);
-        let packing = start.elapsed().as_secs_f64();
-        let compile = || match live.compiled {
-            Some(compiled) => compiled.get(gpu, &wgsl),
-            None => gpu.compile(&wgsl, "main"),
-        };
-        let pipeline = Pipeline::with(gpu, &packed, &features, compile)?;
-        [report.seconds.instance, report.seconds.device] = gpu.seconds;
-        report.seconds.compile = pipeline.seconds[0];
-        report.seconds.upload = packing + pipeline.seconds[1];
+        let pipeline = self.pipeline(live, &packed, watch)?;
         let frame = bands::Frame {
             width: self.width,
             rows: self.rows.clone(),
@@ -81,39 +96,65 @@ impl Job<'_> {
             dispatch_seconds: live.dispatch_seconds,
             canvas: live.canvas,
         };
-        let mut finish = Finish::new(self.tracer, emit, certified, self.settings.verdicts);
-        let ended = self.in_step(live, &pipeline, &frame, &mut finish, report);
-        report.backend = Backend::Gpu;
-        report.adapter = Some(gpu.name.clone());
-        report.bands = finish.bands;
-        report.spot_checks = finish.spot_checks;
-        let [refine, spot_checks, emitting] = finish.seconds;
-        report.seconds.refine = refine;
-        report.seconds.spot_checks = spot_checks;
-        report.seconds.emit = emitting;
-        report.count(&finish.tally);
-        let digest = finish.digest;
+        let mut finish = Finish::new(self.tracer, emit, self.settings);
+        let ended = self.in_step(live, &pipeline, &frame, &mut finish, watch);
+        let (done, digest) = finish.end();
+        let done = Done {
+            adapter: Some(live.gpu.name.clone()),
+            ..done
+        };
         match ended {
-            Ok(()) => Ok(()),
+            Ok(kernel) => Ok(Done {
+                beside: Beside {
+                    kernel,
+                    ..done.beside
+                },
+                ..done
+            }),
             Err(Stop::Error(error)) => Err(error),
             Err(Stop::Wrong(wrong)) => {
-                trust::revoke(gpu, self.settings.cache.as_deref());
-                self.again(&wrong, &digest, emit, report)
+                trust::revoke(live.gpu, self.settings.cache.as_deref());
+                self.again(&wrong, &digest, done, emit, watch)
             }
         }
     }
 
-    /// The GPU's side on this thread, `finish` on another: at most one band is being finished while one waits.
+    /// The shader for the packed scene, compiled and bound to it.
+    fn pipeline(
+        &self,
+        live: &Live<'_>,
+        packed: &Packed,
+        watch: &mut Stopwatch,
+    ) -> Result<Pipeline, GpuError> {
+        let gpu = live.gpu;
+        let mut features = FeatureSet::new(packed, self.settings, gpu.lanes);
+        if live.compiled.is_some() && !features.certified {
+            features = features.while_moving();
+        }
+        let wgsl = compose(packed, &features, Entry::Picture);
+        watch.lap(Phase::Pack);
+        let buffers = SceneBuffers::new(gpu, packed, &features)?;
+        watch.lap(Phase::Upload);
+        let shader = match live.compiled {
+            Some(compiled) => compiled.get(gpu, &wgsl),
+            None => gpu.compile(&wgsl, "main"),
+        }?;
+        watch.lap(Phase::Compile);
+        Ok(Pipeline::of(shader, buffers, packed, &features))
+    }
+
+    /// The GPU's side on this thread, `finish` on another: at most one band is being finished while one waits. Returns
+    /// the seconds of the kernels.
     fn in_step(
         &self,
         live: &Live<'_>,
         pipeline: &Pipeline,
         frame: &bands::Frame<'_>,
         finish: &mut Finish<'_, '_, '_>,
-        report: &mut Report,
-    ) -> Result<(), Stop> {
+        watch: &mut Stopwatch,
+    ) -> Result<f64, Stop> {
         let (sender, receiver) = mpsc::sync_channel::<bands::Rendered>(1);
-        let rendered = thread::scope(|scope| {
+        let kernel = thread::scope(|scope| {
             let finisher = thread::Builder::new()
                 .name("finish".into())
                 .spawn_scoped(scope, || {
@@ -123,41 +164,38 @@ impl Job<'_> {
                         .try_for_each(|band| self.on_threads(|| finish.band(band)))
                 })
                 .map_err(|error| Error::Threads(error.to_string()))?;
-            let rendered = bands::run(
-                live.gpu,
-                pipeline,
-                frame,
-                live.stop,
-                &mut |band| match sender.send(band) {
-                    Ok(()) => ControlFlow::Continue(()),
-                    Err(_) => ControlFlow::Break(()),
-                },
-            );
+            watch.lap(Phase::Threads);
+            let hand_on = &mut |band| match sender.send(band) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            };
+            let kernel = bands::run(live.gpu, pipeline, frame, live.stop, watch, hand_on);
+            watch.lap(Phase::Release);
             drop(sender);
-            match finisher.join() {
+            let finished = finisher.join();
+            watch.lap(Phase::Drain);
+            match finished {
                 Ok(finished) => finished?,
                 Err(panic) => std::panic::resume_unwind(panic),
             }
-            Ok::<_, Stop>(rendered?)
+            Ok::<_, Stop>(kernel?)
         })?;
         if (live.stop)() {
             return Err(Error::Stopped.into());
         }
-        report.seconds.kernel = rendered.kernel;
-        report.seconds.readback = rendered.readback;
-        report.seconds.held = rendered.held;
-        Ok(())
+        Ok(kernel)
     }
 
-    /// The GPU was sure of a pixel and wrong: the CPU renders the frame. Rows that were handed on already cannot be taken
-    /// back, so they are computed again and compared: if they are right, the CPU goes on below them.
+    /// The GPU was sure of a pixel and wrong: the CPU renders the frame. Rows that were handed on already cannot be
+    /// taken back, so they are computed again and compared: if they are right, the CPU goes on below them.
     fn again(
         &self,
         wrong: &Wrong,
         digest: &Digest,
+        done: Done,
         emit: &mut Emit<'_>,
-        report: &mut Report,
-    ) -> Result<(), Error> {
+        watch: &mut Stopwatch,
+    ) -> Result<Done, Error> {
         let Wrong {
             at: [x, y],
             gpu,
@@ -165,69 +203,67 @@ impl Job<'_> {
         } = wrong;
         let revoked = format!(
             "{} was sure that pixel ({x}, {y}) has the bytes {gpu:?}, and they are {cpu:?}",
-            report.adapter.as_deref().unwrap_or("the GPU")
+            done.adapter.as_deref().unwrap_or("the GPU")
         );
         let below = digest.down_to.unwrap_or(self.rows.end);
-        report.backend = Backend::Cpu;
-        report.revoked = Some(revoked.clone());
-        report.bands = 0;
-        report.count(&Tally::default());
         let mut again = Digest::default();
         let check = &mut |band: &Band| {
             again.add(band);
             Ok(())
         };
-        self.trace(below..self.rows.end, check, report)?;
+        let (checked, checked_bands) = self.trace(below..self.rows.end, check, watch)?;
         if !again.agrees(digest) {
             return Err(Error::Revoked(revoked));
         }
-        self.trace(self.rows.start..below, emit, report)
+        let (tally, bands) = self.trace(self.rows.start..below, emit, watch)?;
+        Ok(Done {
+            backend: Backend::Cpu,
+            revoked: Some(revoked),
+            tally: checked.merge(tally),
+            bands: checked_bands + bands,
+            ..done
+        })
     }
 
     /// Renders on the CPU.
-    pub(super) fn on_cpu(&self, emit: &mut Emit<'_>, report: &mut Report) -> Result<(), Error> {
-        self.trace(self.rows.clone(), emit, report)
+    fn on_cpu(&self, emit: &mut Emit<'_>, watch: &mut Stopwatch) -> Result<Done, Error> {
+        let (tally, bands) = self.trace(self.rows.clone(), emit, watch)?;
+        Ok(Done::on_cpu(tally, bands))
     }
 
-    /// Traces rows on the CPU, and adds what that took to the report.
+    /// Traces rows on the CPU. Returns what decided them, and the number of bands.
     fn trace(
         &self,
         rows: Range<u32>,
         emit: &mut Emit<'_>,
-        report: &mut Report,
-    ) -> Result<(), Error> {
+        watch: &mut Stopwatch,
+    ) -> Result<(Tally, u32), Error> {
+        let (mut tally, mut bands) = (Tally::default(), 0);
         if rows.is_empty() {
-            return Ok(());
+            return Ok((tally, bands));
         }
         let stages = self.on_threads(|| self.tracer.stages());
+        watch.lap(Phase::Prepare);
         let lanes = self.on_threads(|| Lanes::new(stages.bounded(), self.scene, self.settings));
-        let wanted = Wanted {
-            values: self.settings.values,
-            verdicts: self.settings.verdicts,
-        };
+        watch.lap(Phase::Pack);
         let most = ((4 << 20) / self.width).max(1);
         let fixed = self.settings.band_rows.map(|rows| rows.clamp(1, most));
         let mut height = fixed.unwrap_or(16).min(rows.end - rows.start);
-        let mut tally = report.decided.clone();
         let mut end = rows.end;
         while end > rows.start {
-            let kernel = Instant::now();
             let (band, counted) =
-                self.on_threads(|| self.tracer.band(end - height..end, wanted, lanes.as_ref()))?;
+                self.on_threads(|| self.tracer.band(end - height..end, lanes.as_ref()))?;
             tally = tally.merge(counted);
-            let seconds = kernel.elapsed().as_secs_f64();
-            report.seconds.kernel += seconds;
-            let emitting = Instant::now();
+            let seconds = watch.lap(Phase::Trace);
             emit(&band)?;
-            report.seconds.emit += emitting.elapsed().as_secs_f64();
-            report.bands += 1;
+            watch.lap(Phase::Emit);
+            bands += 1;
             end -= height;
             height = fixed
                 .unwrap_or_else(|| next_height(height, seconds, most))
                 .min(end - rows.start);
         }
-        report.count(&tally);
-        Ok(())
+        Ok((tally, bands))
     }
 
     /// Runs on the threads that were asked for.

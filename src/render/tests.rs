@@ -1,7 +1,10 @@
 //! Faults that certified rendering has to notice: a device that fails the self-test, bytes that it is sure of and gets
 //! wrong. They need an adapter, and fail without one.
 
+mod seconds;
+
 use super::*;
+use crate::certify::Stage;
 use crate::certify::spot::spots;
 use crate::certify::trust::tests::forget_all;
 use crate::gpu::bands::assembly::tests::tamper_with;
@@ -204,8 +207,8 @@ fn antialiased(
     (report, rgb)
 }
 
-/// Of pixels with doubtful samples the CPU computes those alone; all of them where the list has no room. The bytes are the
-/// same.
+/// Of pixels with doubtful samples the CPU computes those alone; all of them where the list has no room. The bytes are
+/// the same.
 #[test]
 fn only_doubtful_samples_are_computed() {
     for (samples, jitter) in [(16, Spread::Hash), (40, Spread::Hash), (16, Spread::Course)] {
@@ -231,7 +234,8 @@ fn only_doubtful_samples_are_computed() {
         assert_eq!([few.refined, one.refined], [report.refined; 2]);
         let all = report.refined * u64::from(samples);
         println!(
-            "{samples} samples: {} of {} pixels, {} samples of them, with room for 20 a dispatch {}, for one {}, all are {all}",
+            "{samples} samples: {} of {} pixels, {} samples of them, with room for 20 a dispatch {}, for one {}, all \
+            are {all}",
             report.refined,
             report.pixels,
             report.refined_samples,
@@ -246,8 +250,8 @@ fn only_doubtful_samples_are_computed() {
     }
 }
 
-/// A doubtful sample that is dropped is seen in the picture, and so is a sum that is off; and plumb sees it itself where one
-/// of these pixels is checked: one row a band has a checked pixel in each row.
+/// A doubtful sample that is dropped is seen in the picture, and so is a sum that is off; and plumb sees it itself
+/// where one of these pixels is checked: one row a band has a checked pixel in each row.
 #[test]
 fn wrong_parts_are_seen() {
     let (_, right) = antialiased(Backend::Cpu, 16, Spread::Hash, 71);

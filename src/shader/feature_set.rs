@@ -7,7 +7,7 @@ use super::kind::SurfaceKind;
 use super::pack::Packed;
 use crate::procedural::{self, Family, Shader};
 use crate::real::rational::two_to;
-use crate::settings::{Precision, Settings, Spread};
+use crate::settings::{Settings, Spread};
 
 /// Which parts of the shader a scene needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -111,7 +111,8 @@ impl FeatureSet {
             .iter()
             .map(|p| p.front)
             .chain(packed.rectangles.iter().map(|r| r.front));
-        let certified = settings.precision == Precision::Certified && !settings.values;
+        let certified = settings.has_gpu_bounds();
+        let several = settings.supersampling();
         Self {
             planes: !packed.planes.is_empty(),
             rectangles: !packed.rectangles.is_empty(),
@@ -127,13 +128,13 @@ impl FeatureSet {
             quad: packed.tiles.is_none()
                 && packed.lit.is_none()
                 && (1..=QUAD_OBJECTS[usize::from(certified)]).contains(&objects)
-                && settings.samples <= 1
+                && several.is_none()
                 && !settings.values,
             moving: false,
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
             samples: settings.samples,
-            course: settings.samples > 1 && settings.jitter == Spread::Course,
+            course: several.is_some_and(|several| several.spread == Spread::Course),
             lanes,
             lit: packed.lit.as_ref().map(|lit| LitFeatures {
                 mirror: lit.mirror,

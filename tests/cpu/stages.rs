@@ -9,6 +9,7 @@ use plumb::jitter::{self, Sampling};
 use plumb::prepare::{Prepared, View};
 use plumb::real::{Bounded, Lazy, Real};
 use plumb::scene::{Scene, load_from};
+use plumb::settings::Settings;
 
 use crate::common;
 
@@ -148,7 +149,11 @@ fn what_is_missing_of_a_part_is_added() {
     const SAMPLES: u32 = 40;
     let path = common::scenes().join("lit/mirror_balls.txt");
     let scene = common::read(&path);
-    let view = View::new(0.0, SAMPLES);
+    let view = Settings {
+        samples: SAMPLES,
+        ..Settings::default()
+    }
+    .view();
     let stages = Stages::new(&scene, view);
     let plain = Prepared::<f64>::new(&scene, view);
     let limits = Limits::default();

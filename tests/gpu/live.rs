@@ -4,9 +4,10 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use plumb::certify::Stage;
+use plumb::gpu::adapters;
 use plumb::gpu::bands::DISPATCH_SECONDS;
 use plumb::gpu::canvas::{Canvas, Scatter};
-use plumb::gpu::device::{self, Gpu};
+use plumb::gpu::device::Gpu;
 use plumb::gpu::pipeline::Compiled;
 use plumb::render::{Backend, Band, Error, Live, Precision, Settings, render, render_live};
 use plumb::scene::Scene;
@@ -28,7 +29,7 @@ fn scene(name: &str, pixeldim: [u32; 2]) -> Scene {
 }
 
 fn open() -> Gpu {
-    device::open(None).unwrap_or_else(|error| panic!("{error}"))
+    adapters::open(None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The words of a canvas.

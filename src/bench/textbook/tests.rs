@@ -8,7 +8,7 @@ use crate::render::{Backend, Settings, render};
 use crate::scene::{load, load_from};
 
 fn gpu() -> Gpu {
-    crate::gpu::device::open(None).expect("this test needs a GPU adapter; a software one will do")
+    crate::gpu::adapters::open(None).expect("this test needs a GPU adapter; a software one will do")
 }
 
 /// Pixels of a scene of ours that differ from the certified picture, with and without preparation; of how many.

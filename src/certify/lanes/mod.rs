@@ -1,4 +1,5 @@
-//! The GPU's arithmetic on the CPU: eight pixels of a row at once, in f32 with the GPU's error bounds (docs/NUMERICS.md).
+//! The GPU's arithmetic on the CPU: eight pixels of a row at once, in f32 with the GPU's error bounds
+//! (docs/NUMERICS.md).
 //!
 //! For scenes without lights, a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's,
 //! so a pixel that is sure here has its exact bytes; the others, and surfaces that are not plain or tiled, are left to
@@ -134,7 +135,7 @@ pub struct Eight {
 impl Lanes {
     /// The scene as the GPU would get it; None where it takes more than there is here.
     pub fn new(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Option<Self> {
-        if prepared.world.is_some() || settings.samples > 1 || settings.values {
+        if prepared.world.is_some() || settings.supersampling().is_some() || settings.values {
             return None;
         }
         Self::of(Packed::prepared(prepared, scene, settings))

@@ -132,8 +132,8 @@ impl Lanes {
     }
 }
 
-/// What is added to a number from −2²² to 2²² and taken away again to leave the nearest whole number. In between that number
-/// stands in the lowest bits.
+/// What is added to a number from −2²² to 2²² and taken away again to leave the nearest whole number. In between that
+/// number stands in the lowest bits.
 const WHOLE: f32 = 12_582_912.0;
 
 /// The rays of the lanes.

@@ -34,8 +34,8 @@ impl Assembly {
         }
     }
 
-    /// Copies a rectangle's pixels to their place. Each comes with its verdict in its highest byte, 0 if it is sure: the
-    /// bytes below it have to be taken apart anyway. Behind them are the records of those with sure and doubtful
+    /// Copies a rectangle's pixels to their place. Each comes with its verdict in its highest byte, 0 if it is sure:
+    /// the bytes below it have to be taken apart anyway. Behind them are the records of those with sure and doubtful
     /// samples.
     pub(super) fn take(&mut self, rectangle: &Rectangle, layout: &Layout, bytes: &[u8]) {
         let [counter, bytes, records] = layout.split(bytes);

@@ -7,7 +7,6 @@ mod plan;
 mod slot;
 
 use std::ops::{ControlFlow, Range};
-use std::time::Instant;
 
 use super::GpuError;
 use super::canvas::Canvas;
@@ -16,6 +15,7 @@ use super::pipeline::Pipeline;
 use crate::frame::Stop;
 use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
+use crate::stopwatch::{Phase, Stopwatch};
 use assembly::Assembly;
 use plan::Plan;
 use slot::Slot;
@@ -31,19 +31,6 @@ const MAX_OFFSETS: u64 = 32 << 20;
 pub const DISPATCH_SECONDS: f64 = 0.15;
 /// Bytes of a sample's offset.
 const OFFSET_BYTES: u64 = 8;
-
-/// Where the time of the bands went, and how many there were.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct BandTimes {
-    /// Number of dispatches.
-    pub dispatches: u32,
-    /// Seconds in kernels: by the device's clock where it has one, else as waited for.
-    pub kernel: f64,
-    /// Seconds waiting for the device and copying, kernels apart.
-    pub readback: f64,
-    /// Seconds that who takes the bands kept the GPU's side waiting.
-    pub held: f64,
-}
 
 /// The frame to render.
 #[derive(Debug)]
@@ -64,25 +51,24 @@ pub struct Frame<'a> {
     pub canvas: Option<&'a Canvas>,
 }
 
-/// Renders the frame from the top row down, and hands each band on: while that is waited for, the next two dispatches are
-/// on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so.
+/// Renders the frame from the top row down, and hands each band on: while that is waited for, the next two dispatches
+/// are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so. Returns the seconds that the
+/// kernels took.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
     stop: &Stop<'_>,
+    watch: &mut Stopwatch,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
-) -> Result<BandTimes, GpuError> {
+) -> Result<f64, GpuError> {
     let (width, rows) = (frame.width, frame.rows.clone());
     let largest = largest_dispatch(gpu, pipeline, width, &rows);
     // Rows are filled up to whole invocations.
     let filled =
         largest + u64::from(pipeline.across - 1) * largest.min(u64::from(rows.end - rows.start));
-    let mut slots = [
-        Slot::new(gpu, pipeline, filled),
-        Slot::new(gpu, pipeline, filled),
-    ];
-    gpu.check()?;
+    // The second one is made when the GPU is busy with the first, and only if there is more to do.
+    let mut slots: [Option<Slot>; 2] = [None, None];
     let mut plan = Plan::new(
         width,
         rows,
@@ -92,40 +78,53 @@ pub fn run(
         frame.dispatch_seconds,
     );
     let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
-    let mut times = BandTimes::default();
+    let mut kernels = 0.0;
     let mut next = 0;
     let mut open = 0;
     loop {
         if stop() {
-            return Ok(times);
+            return Ok(kernels);
         }
         let rectangle = plan.next();
         let mut finished = None;
         if open == 2 || (rectangle.is_none() && open > 0) {
             // The older of the two slots: the other one's work goes on meanwhile.
             let oldest = if open == 2 { next } else { 1 - next };
-            let (pixels, seconds) = slots[oldest].collect(gpu, &mut assembly, &mut times)?;
-            plan.took(pixels, seconds);
+            if let Some(slot) = &mut slots[oldest] {
+                let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
+                plan.took(pixels, seconds);
+                kernels += seconds;
+            }
             open -= 1;
             finished = assembly.finished();
+            watch.lap(Phase::Readback);
         }
         let done = rectangle.is_none() && open == 0;
         if let Some(rectangle) = rectangle {
-            slots[next].submit(gpu, pipeline, frame, rectangle);
+            let slot = match &mut slots[next] {
+                Some(slot) => slot,
+                none => {
+                    let slot = none.insert(Slot::new(gpu, pipeline, filled));
+                    gpu.check()?;
+                    watch.lap(Phase::Buffers);
+                    slot
+                }
+            };
+            slot.submit(gpu, pipeline, frame, rectangle);
+            watch.lap(Phase::Submit);
             next = 1 - next;
             open += 1;
-            times.dispatches += 1;
         }
         // Only now, with the GPU busy: whoever takes the band may keep us waiting.
         if let Some(band) = finished {
-            let start = Instant::now();
-            if hand_on(band).is_break() {
-                return Ok(times);
+            let taken = hand_on(band);
+            watch.lap(Phase::Held);
+            if taken.is_break() {
+                return Ok(kernels);
             }
-            times.held += start.elapsed().as_secs_f64();
         }
         if done {
-            return Ok(times);
+            return Ok(kernels);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Pixels of which the GPU is sure of some samples only: the list of what it has of them.
 //!
-//! The shader appends a record for each (`Pixels` in `shaders/bindings.wgsl`), in an order that changes from run to run,
-//! as long as there is room. A pixel without a record loses nothing but time: the CPU traces all of its samples.
+//! The shader appends a record for each (`Pixels` in `shaders/bindings.wgsl`), in an order that changes from run to
+//! run, as long as there is room. A pixel without a record loses nothing but time: the CPU traces all of its samples.
 
 use super::plan::Rectangle;
 use crate::frame::Part;
@@ -17,8 +17,8 @@ pub(super) const MOST: u64 = COUNTER + MAX_BYTES;
 /// So many records have room in any dispatch that has as many pixels.
 const LEAST: u64 = 256;
 
-/// What a dispatch leaves in its buffer: the counter of records, the pixels, the records. Pixels alone where there are no
-/// records.
+/// What a dispatch leaves in its buffer: the counter of records, the pixels, the records. Pixels alone where there are
+/// no records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Layout {
     /// Bytes of the counter.
@@ -62,8 +62,8 @@ impl Layout {
     }
 }
 
-/// How many records a dispatch of so many pixels has room for, of so many words each: half of the pixels may be doubtful. (Of
-/// our scenes at 16 samples up to an eighth are, but they stand close together.)
+/// How many records a dispatch of so many pixels has room for, of so many words each: half of the pixels may be
+/// doubtful. (Of our scenes at 16 samples up to an eighth are, but they stand close together.)
 fn room(pixels: u64, words: u32) -> u32 {
     let most = MAX_BYTES / (4 * u64::from(words.max(1)));
     let room = (pixels / 2).max(LEAST).min(pixels).min(most) as u32;

@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
 
-/// Ray–object tests of the first dispatch, whose speed is not known yet, for each second that it may take: what two CPU cores
-/// do at least.
+/// Ray–object tests of the first dispatch, whose speed is not known yet, for each second that it may take: what two CPU
+/// cores do at least.
 const FIRST_TESTS: f64 = 56e6;
 /// What a pixel costs beside its objects, in tests.
 const PIXEL_TESTS: u64 = 8;

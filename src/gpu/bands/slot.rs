@@ -1,16 +1,15 @@
 //! The buffers of one dispatch under way: two of these take turns.
 
-use std::time::Instant;
-
 use super::super::GpuError;
 use super::super::device::Gpu;
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::partial;
 use super::plan::Rectangle;
-use super::{BandTimes, Frame, OFFSET_BYTES};
+use super::{Frame, OFFSET_BYTES};
 use crate::shader::constants::WORKGROUP;
 use crate::shader::records::{CameraNumbers, Job};
+use crate::stopwatch::{Phase, Stopwatch};
 
 /// Buffers for one dispatch under way.
 #[derive(Debug)]
@@ -180,19 +179,19 @@ impl Slot {
         self.pending = Some((index, rectangle, layout));
     }
 
-    /// Waits for the dispatch and takes its pixels; returns how many there were, and the seconds they took.
+    /// Waits for the dispatch and takes its pixels; returns how many there were, and the seconds that the kernel took:
+    /// by the device's clock where it has one, else as waited for.
     pub(super) fn collect(
         &mut self,
         gpu: &Gpu,
         assembly: &mut Assembly,
-        times: &mut BandTimes,
+        watch: &mut Stopwatch,
     ) -> Result<(u64, f64), GpuError> {
         let Some((index, rectangle, layout)) = self.pending.take() else {
             return Ok((0, 0.0));
         };
-        let start = Instant::now();
         gpu.wait(index)?;
-        let waited = start.elapsed().as_secs_f64();
+        let waited = watch.lap(Phase::Wait);
         let kernel = match &self.clock {
             Some(clock) => {
                 let view = clock
@@ -216,8 +215,6 @@ impl Slot {
         assembly.take(&rectangle, &layout, &view);
         drop(view);
         self.staging.unmap();
-        times.kernel += kernel;
-        times.readback += (start.elapsed().as_secs_f64() - kernel).max(0.0);
         Ok((pixels, kernel))
     }
 }

@@ -16,8 +16,8 @@ fn flushed(v: f32) -> impl Iterator<Item = f32> + Clone {
         .flatten()
 }
 
-/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32; where |low| is at most
-/// half a last place of `high`. A subnormal sum may be 0.
+/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32; where |low| is at
+/// most half a last place of `high`. A subnormal sum may be 0.
 pub(super) fn nearest_two(high: f64, low: f64, result: f32) -> bool {
     if result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE) {
         return true;

@@ -5,6 +5,7 @@ use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::prepare::Prepared;
 use crate::scene::{Camera, Material, Object, Surface};
+use crate::settings::Settings;
 
 /// Numbers in [0, 1), the same in every run.
 struct Numbers(u64);
@@ -110,7 +111,11 @@ fn the_lists_miss_nothing() {
         let count = [40, 200, 700][round % 3];
         let scene = scene(pixels, balls(&mut numbers, count));
         let samples = 1 + 15 * (round as u32 % 2);
-        let view = View::new(0.0, samples);
+        let view = Settings {
+            samples,
+            ..Settings::default()
+        }
+        .view();
         let prepared = Prepared::new(&scene, view);
         assert!(prepared.tiles.is_some());
         let [listed, all] = both(&scene, &prepared, view.margin);
@@ -146,7 +151,7 @@ fn boxes_are_as_tight_as_outlines() {
     // A ball of radius 1 whose center is 10 before the viewpoint, on the axis: it is seen within d/√(10² − 1) of it.
     let scene = scene([4001, 3001], vec![(DVec3::new(1.5, 1.25, -8.0), 1.0); 40]);
     let prepared = Prepared::<f64>::new(&scene, 0.0);
-    let view = View::new(0.0, 1);
+    let view = View::from(0.0);
     let outlines = Outlines::new(&scene, &prepared.camera, view);
     let (most, covered) = outlines.of(DVec3::new(1.5, 1.25, -8.0), 1.0).unwrap();
     let reach = 2.0 / 99_f64.sqrt() * 1000.0;

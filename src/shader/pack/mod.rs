@@ -22,7 +22,7 @@ use super::records::{
 };
 use crate::prepare::plane::Sides;
 use crate::prepare::tiles::Tiles;
-use crate::prepare::{self, Prepared, View};
+use crate::prepare::{self, Prepared};
 use crate::real::{Bounded, V3};
 use crate::scene::Scene;
 use crate::settings::{Settings, Spread};
@@ -77,21 +77,19 @@ pub struct Packed {
 impl Packed {
     /// Prepares a scene and rounds it to f32.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
-        let view = View::new(settings.screen_tolerance, settings.samples);
-        Self::prepared(&Prepared::new(scene, view), scene, settings)
+        Self::prepared(&Prepared::new(scene, settings.view()), scene, settings)
     }
 
     /// Rounds a scene to f32 that has been prepared as the settings say.
     pub fn prepared(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Self {
-        let tolerance = settings.screen_tolerance;
-        let lattice = match (settings.samples, settings.jitter) {
-            (0 | 1, _) => 1.0,
-            (_, Spread::Hash) => 1.0 / 1024.0,
-            (_, Spread::Course) => 0.0,
+        let lattice = match settings.supersampling().map(|several| several.spread) {
+            None => 1.0,
+            Some(Spread::Hash) => 1.0 / 1024.0,
+            Some(Spread::Course) => 0.0,
         };
         let screen = Screen {
             pixels: scene.camera.pixeldim,
-            margin: View::new(tolerance, settings.samples).margin,
+            margin: settings.view().margin,
             lattice,
         };
         let screen = &screen;

@@ -9,7 +9,7 @@ use crate::procedural::{self, Family};
 use crate::real::Bounded;
 use crate::real::rational::parity;
 use crate::scene::Scene;
-use crate::settings::{Precision, Settings};
+use crate::settings::Settings;
 
 /// What `told` in `shaders/surface.wgsl` reads, in the order in which it stands there behind the objects.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,7 +36,7 @@ impl Tables {
     /// middles.
     pub(super) fn new(scene: &Scene, prepared: &Prepared<Bounded>, settings: &Settings) -> Self {
         let mut tables = Self::default();
-        if settings.precision != Precision::Certified || settings.values || settings.samples > 1 {
+        if !settings.has_gpu_bounds() || settings.supersampling().is_some() {
             return tables;
         }
         let pixels = scene.camera.pixeldim;
@@ -122,6 +122,7 @@ fn texel_bits(i: usize, floor: &IBig, size: u32, repeats: bool) -> u32 {
 mod tests {
     use super::*;
     use crate::scene::load;
+    use crate::settings::Precision;
     use crate::shader::pack::Packed;
 
     #[test]

@@ -1,7 +1,8 @@
 //! Random operands, runs on the GPU, and the tables of what was measured.
 
 use glam::DVec3;
-use plumb::gpu::device::{self, Gpu};
+use plumb::gpu::adapters;
+use plumb::gpu::device::Gpu;
 use plumb::shader::bounds::up;
 use plumb::shader::records::Job;
 use wgpu::util::DeviceExt as _;
@@ -121,7 +122,7 @@ impl TrueBeam {
 
 /// An open adapter; without one there is no test.
 pub(crate) fn open() -> Gpu {
-    device::open(None).unwrap_or_else(|error| {
+    adapters::open(None).unwrap_or_else(|error| {
         panic!("{error}. This test needs a GPU adapter, a software one will do: `sh scripts/test.sh` sees to it")
     })
 }

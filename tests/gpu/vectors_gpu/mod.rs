@@ -5,7 +5,8 @@
 mod operations;
 
 use glam::{DVec2, DVec3};
-use plumb::gpu::device::{self, Gpu};
+use plumb::gpu::adapters;
+use plumb::gpu::device::Gpu;
 use plumb::prepare;
 use plumb::render::Settings;
 use plumb::scene::{Camera, Extent, Material, Object, Scene, Shape, Surface};
@@ -47,7 +48,7 @@ fn rotation(v: vec3f, w: vec3f) -> mat3x3f {
 
 /// An open adapter; without one there is no test.
 fn open(wanted: Option<&str>) -> Gpu {
-    device::open(wanted).unwrap_or_else(|error| {
+    adapters::open(wanted).unwrap_or_else(|error| {
         panic!("{error}. This test needs a GPU adapter, a software one will do: `sh scripts/test.sh` sees to it")
     })
 }

@@ -1,0 +1,227 @@
+//! Adapters: which there are, and which one is used. `plumb doctor` lists them; `render` and others open the first.
+//!
+//! Stands above [`device`](super::device), which opens one, and [`selftest`], which tries out what was opened.
+
+use std::sync::OnceLock;
+
+use serde::Serialize;
+
+use super::GpuError;
+use super::device::{Gpu, describe, driver};
+use super::selftest::{self, Outcome};
+use crate::shader::constants::WORKGROUP;
+
+/// An adapter, for `plumb doctor`.
+#[derive(Debug, Clone, Serialize)]
+pub struct AdapterSummary {
+    /// Its name, as the driver gives it.
+    pub name: String,
+    /// `discrete GPU`, `integrated GPU`, `virtual GPU`, `software` or `other`.
+    pub kind: &'static str,
+    /// The graphics API: `Vulkan`, `Metal` or `Dx12`.
+    pub backend: String,
+    /// The driver and its version.
+    pub driver: String,
+    /// Largest storage buffer that can be bound, in bytes.
+    pub max_storage_buffer: u64,
+    /// Largest buffer, in bytes.
+    pub max_buffer: u64,
+    /// Largest workgroup, in invocations.
+    pub max_workgroup: u32,
+    /// Whether kernels can be timed on the device.
+    pub timestamps: bool,
+    /// Whether shaders can compute in f64 (plumb does not need it).
+    pub shader_f64: bool,
+    /// Why plumb cannot use it, if so.
+    pub problem: Option<String>,
+    /// How the self-test went, check by check; none where plumb cannot use the adapter.
+    pub selftest: Option<Vec<Outcome>>,
+}
+
+/// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software; each of them
+/// tested.
+pub fn list() -> Vec<AdapterSummary> {
+    let tested = |adapter: &wgpu::Adapter| {
+        let mut summary = summary(adapter);
+        if summary.problem.is_none() {
+            match Gpu::open(adapter).and_then(|gpu| selftest::run(&gpu)) {
+                Ok(outcomes) => summary.selftest = Some(outcomes),
+                Err(error) => summary.problem = Some(error.to_string()),
+            }
+        }
+        summary
+    };
+    enumerate().iter().map(tested).collect()
+}
+
+/// The first adapter that can be used, or the first whose name contains `wanted` in any case of letters.
+///
+/// # Errors
+/// If there is none.
+pub fn find(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
+    choose(&enumerate(), wanted).cloned()
+}
+
+/// Opens the adapter that [`find`] finds.
+///
+/// # Errors
+/// As [`find`], and as [`Gpu::open`].
+pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
+    Gpu::open(&find(wanted)?)
+}
+
+/// A device for a window, with what else a window is made from.
+#[derive(Debug)]
+pub struct Opened {
+    /// The device.
+    pub gpu: Gpu,
+    /// What adapters and surfaces come from.
+    pub instance: wgpu::Instance,
+    /// The adapter that it was opened on.
+    pub adapter: wgpu::Adapter,
+}
+
+/// The same as [`open`], for a window.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
+    let adapter = find(wanted)?;
+    Ok(Opened {
+        gpu: Gpu::open(&adapter)?,
+        instance: instance().clone(),
+        adapter,
+    })
+}
+
+/// The process's one instance. It is never dropped, since that unloads the driver, and NVIDIA's can be loaded about
+/// thirty times in a process only: the next instance finds no adapter, or the process dies. So a process may open as
+/// many devices, one after the other, as it likes; and only the first of them waits for the driver.
+fn instance() -> &'static wgpu::Instance {
+    static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
+    INSTANCE.get_or_init(|| {
+        wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::PRIMARY,
+            flags: wgpu::InstanceFlags::empty().with_env(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        })
+    })
+}
+
+/// All adapters, those that plumb prefers first.
+fn enumerate() -> Vec<wgpu::Adapter> {
+    let mut adapters = pollster::block_on(instance().enumerate_adapters(wgpu::Backends::PRIMARY));
+    // Stable: among equals the system's own order stays.
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    adapters
+}
+
+fn rank(kind: wgpu::DeviceType) -> u32 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        wgpu::DeviceType::Other => 4,
+    }
+}
+
+fn choose<'a>(
+    adapters: &'a [wgpu::Adapter],
+    wanted: Option<&str>,
+) -> Result<&'a wgpu::Adapter, GpuError> {
+    if adapters.is_empty() {
+        return Err(GpuError::NoAdapter);
+    }
+    if let Some(wanted) = wanted {
+        let part = wanted.to_lowercase();
+        let named =
+            |adapter: &&wgpu::Adapter| describe(&adapter.get_info()).to_lowercase().contains(&part);
+        return adapters
+            .iter()
+            .find(named)
+            .ok_or_else(|| GpuError::NoSuchAdapter {
+                wanted: wanted.to_owned(),
+                found: adapters
+                    .iter()
+                    .map(|adapter| describe(&adapter.get_info()))
+                    .collect(),
+            });
+    }
+    let usable = adapters.iter().find(|adapter| problem(adapter).is_none());
+    match usable {
+        Some(adapter) => Ok(adapter),
+        None => Err(GpuError::Device {
+            adapter: describe(&adapters[0].get_info()),
+            reason: problem(&adapters[0]).unwrap_or_default(),
+        }),
+    }
+}
+
+/// Why plumb cannot use the adapter, if so.
+fn problem(adapter: &wgpu::Adapter) -> Option<String> {
+    let limits = adapter.limits();
+    let flags = adapter.get_downlevel_capabilities().flags;
+    if !flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+        return Some("it has no compute shaders".into());
+    }
+    let needed = WORKGROUP * WORKGROUP;
+    if limits.max_compute_invocations_per_workgroup < needed {
+        return Some(format!(
+            "its workgroups hold fewer than {needed} invocations"
+        ));
+    }
+    None
+}
+
+fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
+    let info = adapter.get_info();
+    let limits = adapter.limits();
+    let features = adapter.features();
+    AdapterSummary {
+        name: info.name.clone(),
+        kind: match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+            wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+            wgpu::DeviceType::VirtualGpu => "virtual GPU",
+            wgpu::DeviceType::Cpu => "software",
+            wgpu::DeviceType::Other => "other",
+        },
+        backend: info.backend.to_string(),
+        driver: driver(&info),
+        max_storage_buffer: limits.max_storage_buffer_binding_size,
+        max_buffer: limits.max_buffer_size,
+        max_workgroup: limits.max_compute_invocations_per_workgroup,
+        timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+        shader_f64: features.contains(wgpu::Features::SHADER_F64),
+        problem: problem(adapter),
+        selftest: None,
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fs;
+
+    use super::*;
+
+    /// The libraries that the process has loaded.
+    fn loaded() -> BTreeSet<String> {
+        let maps = fs::read_to_string("/proc/self/maps").unwrap();
+        let path = |line: &str| Some(line[line.find('/')?..].to_owned());
+        let libraries = maps.lines().filter_map(path);
+        libraries.filter(|path| path.contains(".so")).collect()
+    }
+
+    /// Some drivers cannot be loaded again and again. Needs an adapter, and fails without one.
+    #[test]
+    fn the_driver_stays_loaded_between_devices() {
+        let gpu = open(None).unwrap();
+        let with = loaded();
+        drop(gpu);
+        let without = loaded();
+        let gone: Vec<_> = with.difference(&without).collect();
+        assert!(gone.is_empty(), "{gone:?}");
+    }
+}
