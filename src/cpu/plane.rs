@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::camera::Ray;
 use crate::prepare::extent::Extent;
+use crate::prepare::plane::Sides;
 use crate::prepare::{Plane, WorldPlane};
 use crate::real::{Real, Undecided, V3};
 
@@ -22,9 +23,16 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
     if !inverse.positive()? {
         return Ok(None);
     }
-    for side in plane.sides.all() {
-        if !along(&side.form).non_negative()? {
-            return Ok(None);
+    match &plane.sides {
+        Sides::Unbounded => {}
+        Sides::Rectangle(strips) => {
+            for strip in strips.iter() {
+                // 0 ≤ p ≤ length, all times 1/s.
+                let p = along(&strip.form);
+                if !p.non_negative()? || !(strip.length * inverse - p).non_negative()? {
+                    return Ok(None);
+                }
+            }
         }
     }
     Ok(Some(inverse))

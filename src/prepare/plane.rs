@@ -59,32 +59,24 @@ impl Step {
     }
 }
 
-/// A side as primary rays see it: inside is where form·(W.x, W.y, 1) ≥ 0.
-#[derive(Debug, Clone)]
-pub struct Side<R> {
-    /// Coefficients over (W.x, W.y, 1): a form over positions, times 1/s, is linear in the ray.
-    pub form: [R; 3],
-    /// The same border where it runs along a column or row.
-    pub step: Option<Step>,
-}
-
-/// The sides of a plane as primary rays see them: a hit is inside all of them.
+/// The sides of a plane as primary rays see them.
 #[derive(Debug, Clone)]
 pub enum Sides<R> {
     /// There are none: the plane has no end.
     Unbounded,
-    /// Those of a rectangle, with p and d as in [`Rectangle`]: p₀ ≥ 0, p₁ ≥ 0, p₀ ≤ d₀, p₁ ≤ d₁.
-    Rectangle(Box<[Side<R>; 4]>),
+    /// A rectangle is where two strips cross.
+    Rectangle(Box<[Strip<R>; 2]>),
 }
 
-impl<R> Sides<R> {
-    /// All of them.
-    pub fn all(&self) -> &[Side<R>] {
-        match self {
-            Self::Unbounded => &[],
-            Self::Rectangle(sides) => sides.as_slice(),
-        }
-    }
+/// What lies between two parallel sides, 0 ≤ p ≤ length: on the ray s·W, p/s is linear in the ray.
+#[derive(Debug, Clone)]
+pub struct Strip<R> {
+    /// Coefficients of p/s over (W.x, W.y, 1).
+    pub form: [R; 3],
+    /// In units of 2^scale.
+    pub length: R,
+    /// The borders p ≥ 0 and p ≤ length, where they run along columns or rows.
+    pub steps: [Option<Step>; 2],
 }
 
 impl<R: Real> Plane<R> {
@@ -124,14 +116,10 @@ impl<R: Real> Plane<R> {
             scene::Extent::Rectangle(rectangle) => {
                 let steps = side_steps(camera, normal, point, rectangle, &[&a, &b, &c]);
                 let distance = R::ratio(&(&v[2] / &unit));
-                let rectangle = Rectangle::<R>::new(camera, scale, normal, point, rectangle);
-                let forms = side_forms(&rectangle, &inverse, distance);
-                let [p0, p1, q0, q1] = forms;
-                let [s0, s1, s2, s3] = steps;
-                Sides::Rectangle(Box::new(
-                    [(p0, s0), (p1, s1), (q0, s2), (q1, s3)]
-                        .map(|(form, step)| Side { form, step }),
-                ))
+                let rectangle = Rectangle::new(camera, scale, normal, point, rectangle);
+                let [first, second] = steps;
+                let strip = |i, steps| Strip::new(&rectangle, i, &inverse, distance, steps);
+                Sides::Rectangle(Box::new([strip(0, first), strip(1, second)]))
             }
         };
         Some(Self {
@@ -148,47 +136,42 @@ impl<R: Real> Plane<R> {
     }
 }
 
-/// p₀, p₁, d₀ − p₀ and d₁ − p₁ of a rectangle, all times 1/s, which is `inverse`, over (W.x, W.y, 1); W.z is
-/// −`distance`.
-fn side_forms<R: Real>(rectangle: &Rectangle<R>, inverse: &[R; 3], distance: R) -> [[R; 3]; 4] {
-    let from_start = [0, 1].map(|i| {
+impl<R: Real> Strip<R> {
+    /// The strip along side `i` of a rectangle; `inverse` is 1/s over (W.x, W.y, 1), and W.z is −`distance`.
+    fn new(
+        rectangle: &Rectangle<R>,
+        i: usize,
+        inverse: &[R; 3],
+        distance: R,
+        steps: [Option<Step>; 2],
+    ) -> Self {
         let (row, origin) = (rectangle.rows[i], rectangle.origin[i]);
-        [
-            row.x - origin * inverse[0],
-            row.y - origin * inverse[1],
-            -(row.z * distance) - origin * inverse[2],
-        ]
-    });
-    let to_end = [0, 1].map(|i| {
-        let (p, length) = (from_start[i], rectangle.dimensions[i]);
-        [0, 1, 2].map(|k| length * inverse[k] - p[k])
-    });
-    [from_start[0], from_start[1], to_end[0], to_end[1]]
+        Self {
+            form: [
+                row.x - origin * inverse[0],
+                row.y - origin * inverse[1],
+                -(row.z * distance) - origin * inverse[2],
+            ],
+            length: rectangle.dimensions[i],
+            steps,
+        }
+    }
 }
 
-/// The sides that run along columns or rows; `inverse` is 1/s over (W.x, W.y, 1) in world units.
+/// The sides of a rectangle that run along columns or rows; `inverse` is 1/s over (W.x, W.y, 1) in world units.
 fn side_steps(
     camera: &scene::Camera,
     normal: DVec3,
     point: DVec3,
     rectangle: &scene::Rectangle,
     inverse: &[&Ratio; 3],
-) -> [Option<Step>; 4] {
+) -> [[Option<Step>; 2]; 2] {
     let v = ratio3(camera.viewpoint);
-    let n = ratio3(normal);
     let corner = sub(&ratio3(point), &v);
-    let [first, second] = along_sides(&n, &ratio3(rectangle.xdir));
     let q = over_pixels(camera, &inverse.map(Clone::clone));
-    let mut steps = [None, None, None, None];
-    for (i, (row, dimension)) in [
-        (first, rectangle.dimensions.x),
-        (second, rectangle.dimensions.y),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        // |row| times p/s, and the same for d − p where |row| is rational.
-        let offset = dot(&row, &corner);
+    let steps = |row: &[Ratio; 3], length: f64| {
+        // |row| times p/s, and the same for length − p where |row| is rational.
+        let offset = dot(row, &corner);
         let p = over_pixels(
             camera,
             &[
@@ -197,13 +180,15 @@ fn side_steps(
                 -(&row[2] * &v[2]) - &offset * inverse[2],
             ],
         );
-        steps[i] = Step::of(&p);
-        steps[i + 2] = root(&dot(&row, &row)).and_then(|length| {
-            let d = ratio(dimension) * length;
+        let end = root(&dot(row, row)).and_then(|size| {
+            let d = ratio(length) * size;
             Step::of(&[&d * &q[0] - &p[0], &d * &q[1] - &p[1], &d * &q[2] - &p[2]])
         });
-    }
-    steps
+        [Step::of(&p), end]
+    };
+    let [first, second] = along_sides(&ratio3(normal), &ratio3(rectangle.xdir));
+    let lengths = rectangle.dimensions;
+    [steps(&first, lengths.x), steps(&second, lengths.y)]
 }
 
 /// The rule H.z ≤ τ as a linear form over pixels that is ≥ 0 where it holds.

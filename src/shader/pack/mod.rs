@@ -166,10 +166,10 @@ impl Packed {
                     self.planes
                         .push(primary::plane(&scene.camera, plane, screen, group))
                 }
-                Sides::Rectangle(sides) => self.rectangles.push(primary::rectangle(
+                Sides::Rectangle(strips) => self.rectangles.push(primary::rectangle(
                     &scene.camera,
                     plane,
-                    sides,
+                    strips,
                     screen,
                     group,
                 )),

@@ -1,7 +1,7 @@
 //! What primary rays can hit, as forms over the pixel with literal error bounds: planes, rectangles, spheres.
 
 use crate::prepare::camera::ANCHOR_LIMIT;
-use crate::prepare::plane::Side;
+use crate::prepare::plane::{Step, Strip};
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
@@ -61,19 +61,24 @@ pub(super) fn plane(
 pub(super) fn rectangle(
     camera: &Camera<Bounded>,
     plane: &prepare::Plane<Bounded>,
-    sides: &[Side<Bounded>; 4],
+    strips: &[Strip<Bounded>; 2],
     screen: &Screen,
     group: u32,
 ) -> Rectangle {
     let reach = screen.reach(camera.anchor);
     let base = self::plane(camera, plane, screen, group);
-    let side = |side: &Side<Bounded>| -> Form<3> {
-        let exact = side.step.as_ref();
+    let side = |form: &[Bounded; 3], exact: &Option<Step>| -> Form<3> {
         exact
+            .as_ref()
             .and_then(|s| step(s, camera.anchor, screen))
-            .unwrap_or_else(|| linear(over_pixels(camera, &side.form), reach, screen))
+            .unwrap_or_else(|| linear(over_pixels(camera, form), reach, screen))
     };
-    let [a, b, c, d] = sides.each_ref().map(side);
+    let q = plane.inverse;
+    let [[a, c], [b, d]] = strips.each_ref().map(|strip| {
+        let (p, [start, end]) = (strip.form, &strip.steps);
+        let rest = [0, 1, 2].map(|k| strip.length * q[k] - p[k]);
+        [side(&p, start), side(&rest, end)]
+    });
     Rectangle {
         inverse: base.inverse,
         object: base.object,
