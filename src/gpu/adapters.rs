@@ -199,7 +199,8 @@ fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
     }
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
+#[cfg(target_os = "linux")]
 mod tests {
     use std::collections::BTreeSet;
     use std::fs;
