@@ -1,8 +1,8 @@
-// What the host hands over: a job, the scene's buffers, and one for the pixels.
+// What the host hands over: a dispatch's record, the scene's buffers, and one for the pixels.
 
 // The rectangle of pixels that this dispatch makes.
-struct Job {
-//#insert members Job
+struct Dispatch {
+//#insert members Dispatch
 //#if moving
     // The camera, while it moves: the text stays the same then, and is compiled once.
 //#insert members CameraNumbers camera_

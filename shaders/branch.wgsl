@@ -3,7 +3,7 @@
 
 // A ray of the tree.
 struct Branch {
-    beam: Beam,
+    ray: SecondaryRay,
     // Length of the path before it.
     total: f32,
     total_error: f32, //~
@@ -41,35 +41,35 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
 
 // The mirror image of the ray that ended at a point.
 fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
-    let along = -dot(point.normal, ended.beam.dir);
+    let along = -dot(point.normal, ended.ray.dir);
     var mirror: Branch;
-    mirror.beam.base = point.position;
+    mirror.ray.base = point.position;
     mirror.total = ended.total;
     mirror.last = point.group;
     mirror.weight = ended.weight * specular;
 //#if certified
-    mirror.beam.dir = barrier(2.0 * along * point.normal + ended.beam.dir);
-    mirror.beam.dir_error = SECOND_ORDER * ended.beam.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
-    mirror.beam.base_error = point.error;
-    mirror.beam.size = point.size;
+    mirror.ray.dir = barrier(2.0 * along * point.normal + ended.ray.dir);
+    mirror.ray.dir_error = SECOND_ORDER * ended.ray.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
+    mirror.ray.base_error = point.error;
+    mirror.ray.size = point.size;
     mirror.total_error = ended.total_error;
     mirror.weight_error = ended.weight_error + 2.0 * U;
 //#else
-    mirror.beam.dir = 2.0 * along * point.normal + ended.beam.dir;
+    mirror.ray.dir = 2.0 * along * point.normal + ended.ray.dir;
 //#end
     return mirror;
 }
 //#end
-//#if clear
+//#if transparent
 
 // The ray that goes on behind the point at which a ray ended.
 fn through_branch(ended: Branch, point: Point, transparency: f32) -> Branch {
     var through = ended;
-    through.beam.base = point.position;
+    through.ray.base = point.position;
     through.last = point.group;
 //#if certified
-    through.beam.base_error = point.error;
-    through.beam.size = point.size;
+    through.ray.base_error = point.error;
+    through.ray.size = point.size;
     through.weight_error = ended.weight_error + 5.0 * U;
 //#end
     if transparency > 0.0 {
@@ -82,10 +82,10 @@ fn through_branch(ended: Branch, point: Point, transparency: f32) -> Branch {
 //#end
 
 // Follows the tree from where the primary ray hit.
-fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
+fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint) {
     var at = first;
     var branch: Branch;
-    branch.beam = primary;
+    branch.ray = primary;
     branch.last = NOTHING;
     branch.weight = vec3f(1.0);
 //#if stack
@@ -99,7 +99,7 @@ fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
         }
         steps += 2u;
         let material = materials[objects[at.point.object].material];
-        let lit = shade(at.point, branch.beam);
+        let lit = shade(at.point, branch.ray);
         branch.total += at.t;
         branch.total_error += at.t_error + U * branch.total; //~
         add_shade(traced, branch, material.kept, lit);
@@ -136,8 +136,8 @@ fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
         if passes {
             branch = through;
         }
-        var met: Met;
-        met.object = NOTHING;
+        var hit: SecondaryHit;
+        hit.object = NOTHING;
         var follows = mirrors | passes;
         loop {
             if !follows {
@@ -155,14 +155,14 @@ fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
             rays += 1u;
             steps += 2u * LANES;
 //#if certified
-            met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), LANES);
-            doubt |= !met_sure(met) | (branch.beam.dir_error > DIR_LIMIT);
-            if (met.object != NOTHING) | doubt {
+            hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), LANES);
+            doubt |= !surely_closest(hit) | (branch.ray.dir_error > DIR_LIMIT);
+            if (hit.object != NOTHING) | doubt {
                 break;
             }
 //#else
-            met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), LANES);
-            if met.object != NOTHING {
+            hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX), LANES);
+            if hit.object != NOTHING {
                 break;
             }
 //#end
@@ -183,10 +183,10 @@ fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
         }
         rays += 1u;
 //#if certified
-        let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
-        doubt |= !met_sure(met) | (branch.beam.dir_error > DIR_LIMIT);
+        let hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
+        doubt |= !surely_closest(hit) | (branch.ray.dir_error > DIR_LIMIT);
 //#else
-        let met = closest_from(branch.beam, Range(branch.last, 0u, 0.0, T_MAX), 1u);
+        let hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX), 1u);
 //#end
 //#end
 //#if certified
@@ -195,11 +195,11 @@ fn follow(traced: ptr<function, Traced>, primary: Beam, first: PathPoint) {
             break;
         }
 //#end
-        if met.object == NOTHING {
+        if hit.object == NOTHING {
             break;
         }
-        at.point = locate_met(branch.beam, met);
-        at.t = met.t;
-        at.t_error = met.error; //~
+        at.point = locate_secondary(branch.ray, hit);
+        at.t = hit.t;
+        at.t_error = hit.error; //~
     }
 }

@@ -52,10 +52,10 @@ fn camera_setpix(color: vec3f, error: vec3f) -> u32 {
     let value = clamp(color, vec3f(0.5), vec3f(255.5));
     // Sure where no integer is as near as the bound, or all is above 255.
     let nearest = round(value);
-    let clear = (abs(value - nearest) > error) | (color - error > vec3f(255.5));
+    let decided = (abs(value - nearest) > error) | (color - error > vec3f(255.5));
     // The side of the nearest integer that is certain, not a truncation that the driver may round anew for.
     let bytes = min(vec3u(nearest) - select(vec3u(0u), vec3u(1u), value - nearest < vec3f(0.0)), vec3u(255u));
-    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | select(UNDECIDED, 0u, all(clear));
+    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | select(UNDECIDED, 0u, all(decided));
 }
 //#else
 fn camera_setpix(color: vec3f) -> u32 {
@@ -66,13 +66,13 @@ fn camera_setpix(color: vec3f) -> u32 {
 //#if barrier
 
 // Keeps the compiler from looking through: what stands behind this was rounded as it is, whatever the driver does with the
-// rest. `job.zero` is 0, which only the host knows.
+// rest. `dispatch.zero` is 0, which only the host knows.
 //#if certified
 fn barrier(v: vec3f) -> vec3f {
-    return bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(job.zero));
+    return bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(dispatch.zero));
 }
 fn barrier1(v: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(v) ^ job.zero);
+    return bitcast<f32>(bitcast<u32>(v) ^ dispatch.zero);
 }
 //#else
 fn barrier(v: vec3f) -> vec3f {

@@ -2,7 +2,7 @@
 // Referee: src/cpu/trace.rs.
 
 // An object as a primary ray meets it.
-struct Candidate {
+struct PrimaryIntersection {
     // 1/s, where it is hit: the larger, the nearer; 0 or less is a miss.
     inverse: f32,
     // For sure, where pixels are certified.
@@ -31,40 +31,40 @@ struct Hit {
     group: u32,
 //#end
 //#end
-//#if tiles
+//#if screen_grid
     // Whether every object was asked.
     decided: bool,
 //#end
 }
 
 // Takes a hit if it is nearer, or as near and first in the file.
-fn nearer(closest: ptr<function, Hit>, candidate: Candidate, object: u32, index: u32, group: u32) {
+fn nearer(closest: ptr<function, Hit>, intersection: PrimaryIntersection, object: u32, index: u32, group: u32) {
 //#if certified
-    var hit = candidate.hit;
-    var possible = candidate.possible;
+    var hit = intersection.hit;
+    var possible = intersection.possible;
 //#if groups
     let fresh = (group == 0u) | (group != (*closest).group);
     hit &= fresh;
     possible &= fresh;
 //#end
-    let takes = hit & (candidate.inverse > (*closest).inverse);
-    let high = select(0.0, candidate.inverse + candidate.error, possible);
+    let takes = hit & (intersection.inverse > (*closest).inverse);
+    let high = select(0.0, intersection.inverse + intersection.error, possible);
     (*closest).rival = max((*closest).rival, select(high, (*closest).inverse + (*closest).error, takes));
-    (*closest).error = select((*closest).error, candidate.error, takes);
+    (*closest).error = select((*closest).error, intersection.error, takes);
 //#if groups
     (*closest).group = select((*closest).group, group, takes);
 //#end
 //#else
 //#if mixed
     let best = *closest;
-    let takes = candidate.hit & (candidate.inverse > 0.0)
-        & ((candidate.inverse > best.inverse) | ((candidate.inverse == best.inverse) & (object < best.object)));
+    let takes = intersection.hit & (intersection.inverse > 0.0)
+        & ((intersection.inverse > best.inverse) | ((intersection.inverse == best.inverse) & (object < best.object)));
 //#else
     // Objects of one kind come in the order of the file.
-    let takes = candidate.hit & (candidate.inverse > (*closest).inverse);
+    let takes = intersection.hit & (intersection.inverse > (*closest).inverse);
 //#end
 //#end
-    (*closest).inverse = select((*closest).inverse, candidate.inverse, takes);
+    (*closest).inverse = select((*closest).inverse, intersection.inverse, takes);
     (*closest).object = select((*closest).object, object, takes);
 //#if sphere_point
     (*closest).index = select((*closest).index, index, takes);
@@ -91,23 +91,23 @@ fn find_closest_object(ray: Ray) -> Hit {
         nearer(&closest, sphere_hits(sphere, ray), sphere.object, i, 0u);
     }
 //#end
-//#if tiles
-    // Those that may be seen in this tile of the screen, the nearest first: once one is hit, those farther off do not count.
-    let tile = u32(ray.pixel.y) / TILE_HEIGHT * TILE_COLUMNS + u32(ray.pixel.x) / TILE_WIDTH;
-    let first = tiles[tile];
-    let end = tiles[tile + 1u];
+//#if screen_grid
+    // Those that may be seen in this cell of the screen, the nearest first: once one is hit, those farther off do not count.
+    let cell = u32(ray.pixel.y) / CELL_HEIGHT * GRID_COLUMNS + u32(ray.pixel.x) / CELL_WIDTH;
+    let first = screen_grid[cell];
+    let end = screen_grid[cell + 1u];
     let last = min(end, first + (STEPS_LIMIT - min(steps, STEPS_LIMIT)) / LANES);
     closest.decided = last == end;
     var place = first;
     for (; place < last; place += 1u) {
-        let index = tiles[place];
+        let index = screen_grid[place];
         let sphere = sphere_at(index);
 //#if certified
         let least = closest.inverse - closest.error;
 //#else
         let least = closest.inverse;
 //#end
-        if sphere.most < least {
+        if sphere.max_inverse < least {
             closest.decided = true;
             break;
         }

@@ -2,43 +2,43 @@
 
 //#insert struct Light
 
-// The share of a light that reaches the point.
+// The transmittance: what of a light reaches the point.
 struct Shadow {
-    share: vec3f,
+    transmittance: vec3f,
     // Whether nothing that is opaque stands between; of what panes let through nothing need be left.
     open: bool,
 //#if certified
     sure: bool,
-    // Roundings of the share.
+    // Roundings of the transmittance.
     roundings: f32,
 //#end
 }
 
-// The share of light number `number` that reaches the point; `range` ends at the light.
-fn shadow(beam: Beam, range_: Range) -> Shadow {
-//#if clear
+// The transmittance from the point to light number `number`; `range` ends at the light.
+fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
+//#if transparent
     var range = range_;
-    var share = vec3f(1.0);
+    var transmittance = vec3f(1.0);
     var roundings = 0.0; //~
     loop {
-        let met = closest_from(beam, range, LANES);
+        let hit = closest_hit(ray, range, LANES);
         steps += 2u * LANES;
 //#if certified
-        let left = range.limit - met.t;
-        let left_error = met.error + range.limit_error;
-        if (met.rival - range.limit > range.limit_error) & ((met.object == NOTHING) | (left < -left_error)) {
-            return Shadow(share, true, true, roundings);
+        let left = range.limit - hit.t;
+        let left_error = hit.error + range.limit_error;
+        if (hit.rival - range.limit > range.limit_error) & ((hit.object == NOTHING) | (left < -left_error)) {
+            return Shadow(transmittance, true, true, roundings);
         }
-        if (met.object == NOTHING) | !met_sure(met) | !(left > left_error) | (steps > STEPS_LIMIT) {
+        if (hit.object == NOTHING) | !surely_closest(hit) | !(left > left_error) | (steps > STEPS_LIMIT) {
             return Shadow(vec3f(1.0), true, false, 0.0);
         }
 //#else
-        if (met.object == NOTHING) | (steps > STEPS_LIMIT) {
-            return Shadow(share, true);
+        if (hit.object == NOTHING) | (steps > STEPS_LIMIT) {
+            return Shadow(transmittance, true);
         }
 //#end
-        let blocker = locate_met(beam, met);
-        let material = materials[objects[met.object].material];
+        let blocker = locate_secondary(ray, hit);
+        let material = materials[objects[hit.object].material];
         if material.transparency == 0.0 {
 //#if certified
             return Shadow(vec3f(0.0), false, true, 0.0);
@@ -47,19 +47,19 @@ fn shadow(beam: Beam, range_: Range) -> Shadow {
 //#end
         }
         // Never flushed to nothing: the glint shines through however little else does.
-        share = max(share * (materials[tile_material(blocker)].tint * material.transparency), vec3f(0x1p-120f));
+        transmittance = max(transmittance * (materials[tile_material(blocker)].tint * material.transparency), vec3f(0x1p-120f));
         roundings += 4.0; //~
         range.skip = blocker.group;
-        range.beyond = met.t;
-        range.beyond_error = met.error; //~
+        range.beyond = hit.t;
+        range.beyond_error = hit.error; //~
     }
 //#if certified
-    return Shadow(share, true, false, 0.0);
+    return Shadow(transmittance, true, false, 0.0);
 //#else
-    return Shadow(share, true);
+    return Shadow(transmittance, true);
 //#end
 //#else
-    let found = anything_from(beam, range_);
+    let found = any_hit(ray, range_);
 //#if certified
     return Shadow(vec3f(1.0), found != 2u, found != 1u, 0.0);
 //#else
@@ -94,12 +94,12 @@ fn power(x: f32, n: u32) -> f32 {
 //#end
 
 // What light number `number` brings to a point with diffuse reflectivity `diffuse`, seen by a ray.
-fn light_term(number: u32, point: Point, seen: Beam, diffuse: vec3f) -> Shade {
+fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> Shade {
     var shade: Shade;
     let light = lights[number];
     let bit = select(0u, 1u << number, number < 32u);
-//#if level
-    if (point.level & bit) != 0u {
+//#if lights_on_surface
+    if (point.lights_on_surface & bit) != 0u {
         return shade;
     }
 //#end
@@ -144,16 +144,16 @@ fn light_term(number: u32, point: Point, seen: Beam, diffuse: vec3f) -> Shade {
 //#end
 //#end
 //#if certified
-    let way = Beam(point.position, d, point.error, d_error, point.size);
+    let way = SecondaryRay(point.position, d, point.error, d_error, point.size);
     let blocked = shadow(way, Range(point.group, bit, 0.0, distance, 0.0, distance_error));
     sure &= blocked.sure;
 //#else
-    let blocked = shadow(Beam(point.position, d), Range(point.group, bit, 0.0, distance));
+    let blocked = shadow(SecondaryRay(point.position, d), Range(point.group, bit, 0.0, distance));
 //#end
     if !blocked.open {
         return shade;
     }
-    let full = diffuse * light.emissivity * blocked.share * (inverse * CAMERA_UNIT);
+    let full = diffuse * light.emissivity * blocked.transmittance * (inverse * CAMERA_UNIT);
     shade.color = full * max(c, 0.0);
     shade.error = full * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
 //#if glint

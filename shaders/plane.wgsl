@@ -8,24 +8,24 @@
 //#insert struct Plane
 
 // The plane as a primary ray meets it.
-fn plane_hits(plane: Plane, ray: Ray) -> Candidate {
+fn plane_hits(plane: Plane, ray: Ray) -> PrimaryIntersection {
     let at = from_pixel(ray, CAMERA_ANCHOR);
-    var candidate: Candidate;
-    candidate.inverse = plane.inverse.x * at.x + plane.inverse.y * at.y + plane.inverse.z;
+    var intersection: PrimaryIntersection;
+    intersection.inverse = plane.inverse.x * at.x + plane.inverse.y * at.y + plane.inverse.z;
 //#if front
     let side = plane.front.x * at.x + plane.front.y * at.y + plane.front.z;
 //#if certified
-    candidate.hit = side > plane.front_error;
-    candidate.possible = side > -plane.front_error;
+    intersection.hit = side > plane.front_error;
+    intersection.possible = side > -plane.front_error;
 //#else
-    candidate.hit = side >= 0.0;
+    intersection.hit = side >= 0.0;
 //#end
 //#else
-    candidate.hit = true;
-    candidate.possible = true; //~
+    intersection.hit = true;
+    intersection.possible = true; //~
 //#end
-    candidate.error = plane.inverse_error; //~
-    return candidate;
+    intersection.error = plane.inverse_error; //~
+    return intersection;
 }
 //#end
 //#if rectangle
@@ -33,28 +33,28 @@ fn plane_hits(plane: Plane, ray: Ray) -> Candidate {
 //#insert struct Rectangle
 
 // The rectangle as a primary ray meets it.
-fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> Candidate {
+fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> PrimaryIntersection {
     let at = vec3f(from_pixel(ray, CAMERA_ANCHOR), 1.0);
     let sides = vec4f(dot(rectangle.side_0, at), dot(rectangle.side_1, at), dot(rectangle.side_2, at), dot(rectangle.side_3, at));
-    var candidate: Candidate;
-    candidate.inverse = dot(rectangle.inverse, at);
+    var intersection: PrimaryIntersection;
+    intersection.inverse = dot(rectangle.inverse, at);
 //#if certified
-    candidate.hit = all(sides > rectangle.side_errors);
-    candidate.possible = all(sides > -rectangle.side_errors);
+    intersection.hit = all(sides > rectangle.side_errors);
+    intersection.possible = all(sides > -rectangle.side_errors);
 //#else
-    candidate.hit = all(sides >= vec4f(0.0));
+    intersection.hit = all(sides >= vec4f(0.0));
 //#end
 //#if front
     let side = dot(rectangle.front, at);
 //#if certified
-    candidate.hit &= side > rectangle.front_error;
-    candidate.possible &= side > -rectangle.front_error;
+    intersection.hit &= side > rectangle.front_error;
+    intersection.possible &= side > -rectangle.front_error;
 //#else
-    candidate.hit &= side >= 0.0;
+    intersection.hit &= side >= 0.0;
 //#end
 //#end
-    candidate.error = rectangle.inverse_error; //~
-    return candidate;
+    intersection.error = rectangle.inverse_error; //~
+    return intersection;
 }
 //#end
 //#if lit
@@ -62,30 +62,30 @@ fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> Candidate {
 //#insert struct WorldPlane
 
 // The plane as a ray from anywhere meets it.
-fn plane_hits_from(plane: WorldPlane, beam: Beam, range: Range) -> Meeting {
-    var meeting: Meeting;
-    let ahead = plane.offset - dot(plane.normal, beam.base);
-    let along = dot(plane.normal, beam.dir);
+fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Intersection {
+    var intersection: Intersection;
+    let ahead = plane.offset - dot(plane.normal, ray.base);
+    let along = dot(plane.normal, ray.dir);
     let inverse = 1.0 / along;
     let t = ahead * inverse;
-    meeting.t = t;
+    intersection.t = t;
 //#if certified
-    let ahead_error = beam.base_error + PLANE_ROUNDINGS * U * (abs(plane.offset) + beam.size);
-    let along_error = beam.dir_error + PLANE_ROUNDINGS * U;
+    let ahead_error = ray.base_error + PLANE_ROUNDINGS * U * (abs(plane.offset) + ray.size);
+    let along_error = ray.dir_error + PLANE_ROUNDINGS * U;
     // Unless it is seen edge-on, t is known to within `error`.
     let steep = (abs(along) > 2.0 * along_error) & (abs(t) < FARTHEST);
     let slope = abs(inverse) * (1.0001 + 2.0 * along_error * abs(inverse));
     let error = (ahead_error + abs(t) * along_error) * slope + 8.0 * U * abs(t);
-    var out = (steep & (t < -error)) | (plane.group == range.skip) | ((plane.level & range.light) != 0u);
+    var out = (steep & (t < -error)) | (plane.group == range.skip) | ((plane.lights_on_surface & range.light) != 0u);
     let in = steep & (t > error) & !out;
-    meeting.error = error;
+    intersection.error = error;
     // A plane seen edge-on is met far away, if at all.
-    meeting.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error, steep);
-//#if clear
-    meeting.high = select(T_MAX, t + error, steep);
+    intersection.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error, steep);
+//#if transparent
+    intersection.high = select(T_MAX, t + error, steep);
 //#end
-    let position = (beam.base + t * beam.dir) * plane.keep + plane.own;
-    let position_error = beam.base_error + abs(t) * beam.dir_error + error + POSITION_ROUNDINGS * U * (beam.size + abs(t));
+    let position = (ray.base + t * ray.dir) * plane.axis_mask + plane.fixed_coordinate;
+    let position_error = ray.base_error + abs(t) * ray.dir_error + error + POSITION_ROUNDINGS * U * (ray.size + abs(t));
     let below = plane.highest - position.z;
     out |= in & (below < -position_error);
     var inside = below > position_error;
@@ -93,24 +93,24 @@ fn plane_hits_from(plane: WorldPlane, beam: Beam, range: Range) -> Meeting {
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
         let margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
-        let margin_error = SECOND_ORDER * position_error + plane.sides_error + PLANE_ROUNDINGS * U * (beam.size + abs(t));
+        let margin_error = SECOND_ORDER * position_error + plane.sides_error + PLANE_ROUNDINGS * U * (ray.size + abs(t));
         out |= in & (margin < -margin_error);
         inside &= margin > margin_error;
     }
 //#end
-    meeting.possible = !out;
-    meeting.hit = in & !out & inside;
+    intersection.possible = !out;
+    intersection.hit = in & !out & inside;
 //#else
-    let position = (beam.base + t * beam.dir) * plane.keep + plane.own;
+    let position = (ray.base + t * ray.dir) * plane.axis_mask + plane.fixed_coordinate;
     // A light in the plane is where the ray meets it: at the light, not before.
-    meeting.hit = (t > 0.0) & (position.z <= plane.highest) & (plane.group != range.skip) & ((plane.level & range.light) == 0u);
+    intersection.hit = (t > 0.0) & (position.z <= plane.highest) & (plane.group != range.skip) & ((plane.lights_on_surface & range.light) == 0u);
 //#if rectangle_anywhere
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
-        meeting.hit &= all(p >= vec2f(0.0)) & all(p <= plane.lengths);
+        intersection.hit &= all(p >= vec2f(0.0)) & all(p <= plane.lengths);
     }
 //#end
 //#end
-    return meeting;
+    return intersection;
 }
 //#end

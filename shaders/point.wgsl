@@ -3,11 +3,11 @@
 //#if lit
 
 // The primary ray as one from anywhere.
-fn primary_beam(ray: Ray) -> Beam {
+fn as_secondary_ray(ray: Ray) -> SecondaryRay {
 //#if certified
-    return Beam(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0);
+    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0);
 //#else
-    return Beam(vec3f(0.0), ray.w * ray.inverse_length);
+    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length);
 //#end
 }
 //#end
@@ -39,7 +39,7 @@ fn locate(ray: Ray, hit: Hit) -> Point {
 //#if bvh
 //#if lit_sphere
     if (objects[hit.object].place & SPHERE_BIT) != 0u {
-        on_sphere(&point, sphere_met(world_spheres[objects[hit.object].place & ~SPHERE_BIT], primary_beam(ray)));
+        on_sphere(&point, sphere_normal_from(world_spheres[objects[hit.object].place & ~SPHERE_BIT], as_secondary_ray(ray)));
     }
 //#end
 //#end
@@ -67,9 +67,9 @@ fn complete(point: ptr<function, Point>) {
         let plane = world_planes[object.place];
         (*point).normal = plane.normal;
         (*point).normal_error = 2.0 * U; //~
-        (*point).position = (*point).position * plane.keep + plane.own;
-//#if level
-        (*point).level = plane.level;
+        (*point).position = (*point).position * plane.axis_mask + plane.fixed_coordinate;
+//#if lights_on_surface
+        (*point).lights_on_surface = plane.lights_on_surface;
 //#end
     }
 //#end
@@ -90,19 +90,19 @@ fn on_sphere(point: ptr<function, Point>, normal: vec4f) {
 //#end
 
 // Where a ray from anywhere hit.
-fn locate_met(beam: Beam, met: Met) -> Point {
+fn locate_secondary(ray: SecondaryRay, hit: SecondaryHit) -> Point {
     var point: Point;
-    point.object = met.object;
-    point.position = barrier(beam.base + met.t * beam.dir);
+    point.object = hit.object;
+    point.position = barrier(ray.base + hit.t * ray.dir);
 //#if certified
-    point.error = SECOND_ORDER * (beam.base_error + met.t * beam.dir_error + met.error) + POSITION_ROUNDINGS * U * (beam.size + met.t);
+    point.error = SECOND_ORDER * (ray.base_error + hit.t * ray.dir_error + hit.error) + POSITION_ROUNDINGS * U * (ray.size + hit.t);
 //#end
     complete(&point);
 //#if sphere_beyond
-    let object = objects[met.object];
+    let object = objects[hit.object];
     if (object.place & SPHERE_BIT) != 0u {
         let sphere = world_spheres[object.place & ~SPHERE_BIT];
-        let normal = sphere_met(sphere, beam);
+        let normal = sphere_normal_from(sphere, ray);
         on_sphere(&point, normal);
         point.position = barrier(sphere.center + sphere.radius * normal.xyz);
         point.error = SECOND_ORDER * sphere.radius * normal.w + POSITION_ROUNDINGS * U * sphere.size; //~

@@ -8,32 +8,32 @@
 var<private> zero: u32;
 
 // The barrier: no identity of real arithmetic leads through it.
-fn keep(x: f32) -> f32 {
+fn barrier(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ zero);
 }
 
 // x + y = sum + tail, exactly (Knuth).
 fn two_sum(x: f32, y: f32) -> vec2f {
-    let sum = keep(x + y);
-    let b = keep(sum - x);
-    let a = keep(sum - b);
-    return vec2f(sum, keep(x - a) + keep(y - b));
+    let sum = barrier(x + y);
+    let b = barrier(sum - x);
+    let a = barrier(sum - b);
+    return vec2f(sum, barrier(x - a) + barrier(y - b));
 }
 
 // x = high + low, each of 12 bits (Veltkamp).
 fn split(x: f32) -> vec2f {
-    let c = keep(4097.0 * x);
-    let high = keep(c - keep(c - x));
-    return vec2f(high, keep(x - high));
+    let c = barrier(4097.0 * x);
+    let high = barrier(c - barrier(c - x));
+    return vec2f(high, barrier(x - high));
 }
 
 // x · y = product + tail, exactly (Dekker).
 fn two_prod(x: f32, y: f32) -> vec2f {
-    let product = keep(x * y);
+    let product = barrier(x * y);
     let a = split(x);
     let b = split(y);
-    let rest = keep(keep(keep(a.x * b.x) - product) + keep(a.x * b.y));
-    return vec2f(product, keep(rest + keep(a.y * b.x)) + keep(a.y * b.y));
+    let rest = barrier(barrier(barrier(a.x * b.x) - product) + barrier(a.x * b.y));
+    return vec2f(product, barrier(rest + barrier(a.y * b.x)) + barrier(a.y * b.y));
 }
 
 @compute @workgroup_size(64)
@@ -83,7 +83,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         (a << (b & 31u)) ^ (a >> (b & 31u)),
         bitcast<u32>(bitcast<i32>(a) * bitcast<i32>(b)),
         bitcast<u32>(bitcast<i32>(a) >> (b & 31u)),
-        bitcast<u32>(keep(x)),
+        bitcast<u32>(barrier(x)),
     );
     results[at + 6u] = vec4u(
         bitcast<u32>(sum.x),

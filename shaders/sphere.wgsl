@@ -17,23 +17,23 @@ fn sphere_disc(sphere: Sphere, at: vec2f) -> f32 {
 }
 
 // The sphere as a primary ray meets it; a tangent ray misses.
-fn sphere_hits(sphere: Sphere, ray: Ray) -> Candidate {
+fn sphere_hits(sphere: Sphere, ray: Ray) -> PrimaryIntersection {
     let at = from_pixel(ray, sphere.anchor);
     let along = sphere.along.x * at.x + sphere.along.y * at.y + sphere.along.z;
     let disc = sphere_disc(sphere, at);
-    var candidate: Candidate;
+    var intersection: PrimaryIntersection;
 //#if certified
-    candidate.hit = (disc > sphere.disc_error) & (along > sphere.along_error);
-    candidate.possible = (disc > -sphere.disc_error) & (along > -sphere.along_error);
+    intersection.hit = (disc > sphere.disc_error) & (along > sphere.along_error);
+    intersection.possible = (disc > -sphere.disc_error) & (along > -sphere.along_error);
     let least = barrier1(max(disc, sphere.disc_error));
     let inverse_root = inverseSqrt(least);
-    candidate.inverse = sphere.gain * (along + least * inverse_root);
-    candidate.error = sphere.gain * (sphere.along_error + root_error(least, sphere.disc_error, inverse_root)) + ROOT_ROUNDINGS * U * abs(candidate.inverse);
+    intersection.inverse = sphere.gain * (along + least * inverse_root);
+    intersection.error = sphere.gain * (sphere.along_error + root_error(least, sphere.disc_error, inverse_root)) + ROOT_ROUNDINGS * U * abs(intersection.inverse);
 //#else
-    candidate.hit = (disc > 0.0) & (along > 0.0);
-    candidate.inverse = sphere.gain * (along + sqrt(max(disc, 0.0)));
+    intersection.hit = (disc > 0.0) & (along > 0.0);
+    intersection.inverse = sphere.gain * (along + sqrt(max(disc, 0.0)));
 //#end
-    return candidate;
+    return intersection;
 }
 //#end
 //#if sphere_buffer
@@ -78,7 +78,7 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
 //#insert struct WorldSphere
 
 // How a ray passes a sphere.
-struct Passage {
+struct ClosestApproach {
     // From the ray to the center, at right angles; and its square.
     perpendicular: vec3f,
     apart: f32,
@@ -89,69 +89,69 @@ struct Passage {
     off: f32, //~
 }
 
-fn sphere_passage(center: vec3f, radius: f32, size: f32, beam: Beam) -> Passage {
-    var passage: Passage;
-    let to_center = barrier(center - beam.base);
-    passage.along = dot(to_center, beam.dir);
-    passage.perpendicular = barrier(to_center - passage.along * beam.dir);
-    passage.apart = dot(passage.perpendicular, passage.perpendicular);
+fn closest_approach(center: vec3f, radius: f32, size: f32, ray: SecondaryRay) -> ClosestApproach {
+    var approach: ClosestApproach;
+    let to_center = barrier(center - ray.base);
+    approach.along = dot(to_center, ray.dir);
+    approach.perpendicular = barrier(to_center - approach.along * ray.dir);
+    approach.apart = dot(approach.perpendicular, approach.perpendicular);
 //#if certified
-    let far = abs(passage.along) + radius;
-    passage.off = SECOND_ORDER * beam.base_error + U * size + far * ((2.05 + 2.0 * beam.dir_error) * beam.dir_error + PERPENDICULAR_ROUNDINGS * U);
+    let far = abs(approach.along) + radius;
+    approach.off = SECOND_ORDER * ray.base_error + U * size + far * ((2.05 + 2.0 * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
 //#end
-    return passage;
+    return approach;
 }
 
 // The nearer hit, by the perpendicular from the ray to the center.
-fn sphere_hits_from(sphere: WorldSphere, beam: Beam, range: Range) -> Meeting {
-    var meeting: Meeting;
-    let passage = sphere_passage(sphere.center, sphere.radius, sphere.size, beam);
-    let disc = sphere.radius * sphere.radius - passage.apart;
+fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Intersection {
+    var intersection: Intersection;
+    let approach = closest_approach(sphere.center, sphere.radius, sphere.size, ray);
+    let disc = sphere.radius * sphere.radius - approach.apart;
 //#if certified
-    let disc_error = passage.off * (2.01 * sphere.radius + passage.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
+    let disc_error = approach.off * (2.01 * sphere.radius + approach.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let least = barrier1(max(disc, disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
-    let t = passage.along - root;
-    let error = passage.off + root_error(least, disc_error, inverse_root) + ROOT_ROUNDINGS * U * (abs(passage.along) + root);
-    meeting.t = t;
-    meeting.error = error;
-    meeting.low = t - error;
-//#if clear
-    meeting.high = select(passage.along + passage.off, t + error, disc > disc_error);
+    let t = approach.along - root;
+    let error = approach.off + root_error(least, disc_error, inverse_root) + ROOT_ROUNDINGS * U * (abs(approach.along) + root);
+    intersection.t = t;
+    intersection.error = error;
+    intersection.low = t - error;
+//#if transparent
+    intersection.high = select(approach.along + approach.off, t + error, disc > disc_error);
 //#end
     var out = (disc < -disc_error) | (t < -error) | (sphere.group == range.skip);
-    meeting.hit = !out & (disc > disc_error) & (t > error);
-//#if level
+    intersection.hit = !out & (disc > disc_error) & (t > error);
+//#if lights_on_surface
     // From outside, a light on the sphere is where the ray would enter it: at the light, not before; or where it leaves.
-    let level = (sphere.level & range.light) != 0u;
-    let entry = range.limit - passage.along;
-    out |= level & (entry < -(range.limit_error + error));
-    meeting.hit &= !level | (entry > range.limit_error + error);
+    let on_surface = (sphere.lights_on_surface & range.light) != 0u;
+    let entry = range.limit - approach.along;
+    out |= on_surface & (entry < -(range.limit_error + error));
+    intersection.hit &= !on_surface | (entry > range.limit_error + error);
 //#end
-    meeting.possible = !out;
+    intersection.possible = !out;
 //#else
-    meeting.t = passage.along - sqrt(max(disc, 0.0));
+    intersection.t = approach.along - sqrt(max(disc, 0.0));
     // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
-    let at_light = ((sphere.level & range.light) != 0u) & (range.limit < passage.along);
-    meeting.hit = (disc > 0.0) & (passage.along > 0.0) & (meeting.t > 0.0) & (sphere.group != range.skip) & !at_light;
+    let at_light = ((sphere.lights_on_surface & range.light) != 0u) & (range.limit < approach.along);
+    intersection.hit = (disc > 0.0) & (approach.along > 0.0) & (intersection.t > 0.0) & (sphere.group != range.skip) & !at_light;
 //#end
-    return meeting;
+    return intersection;
 }
 //#end
 //#if sphere_beyond
 
 // H − C over the radius, where a ray from anywhere meets the sphere; in the fourth component the bound of its error.
-fn sphere_met(sphere: WorldSphere, beam: Beam) -> vec4f {
-    let passage = sphere_passage(sphere.center, sphere.radius, sphere.size, beam);
-    let disc = barrier1(max(sphere.radius * sphere.radius - passage.apart, TINY_SQUARE));
+fn sphere_normal_from(sphere: WorldSphere, ray: SecondaryRay) -> vec4f {
+    let approach = closest_approach(sphere.center, sphere.radius, sphere.size, ray);
+    let disc = barrier1(max(sphere.radius * sphere.radius - approach.apart, TINY_SQUARE));
     let inverse_root = inverseSqrt(disc);
     let root = disc * inverse_root;
-    let normal = barrier((passage.perpendicular + root * beam.dir) * -sphere.inverse_radius);
+    let normal = barrier((approach.perpendicular + root * ray.dir) * -sphere.inverse_radius);
 //#if certified
-    let disc_error = passage.off * (2.01 * sqrt(passage.apart) + passage.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
+    let disc_error = approach.off * (2.01 * sqrt(approach.apart) + approach.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
-    let error = SECOND_ORDER * (passage.off + reach_error + root * beam.dir_error);
+    let error = SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);
     return vec4f(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);
 //#else
     return vec4f(normal, 0.0);

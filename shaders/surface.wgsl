@@ -35,9 +35,9 @@ struct Point {
     normal_error: f32, //~
     group: u32,
 //#end
-//#if level
+//#if lights_on_surface
     // Bit i: light i lies in the plane of the point.
-    level: u32,
+    lights_on_surface: u32,
 //#end
 }
 //#if certified
@@ -82,8 +82,8 @@ fn index_error(point: Point) -> f32 {
 }
 
 // Leaves a doubt where an index is no farther from a whole number than its error.
-fn certain(clear: vec3f) {
-    doubt |= !all(clear > vec3f(0.0));
+fn certain(margin: vec3f) {
+    doubt |= !all(margin > vec3f(0.0));
 }
 //#end
 //#if tables
@@ -91,7 +91,7 @@ fn certain(clear: vec3f) {
 // What the host knows of the indices at the hit of a pixel's own ray, from the pixel's column and row: 0 where that is
 // nothing. src/gpu/pack/tables.rs says which bit means what. (The tables are in the buffer of the objects, in the field
 // `kind`, as some drivers allow only ten buffers. Asked only where an index is not certain by itself: loads cost more.)
-fn told(point: Point) -> u32 {
+fn index_table(point: Point) -> u32 {
     let first = objects[TABLES + point.object].kind;
     let there = point.direct & (first != 0u);
     let column = TABLES + select(0u, first + u32(point.pixel.x), there);
@@ -101,10 +101,10 @@ fn told(point: Point) -> u32 {
 //#if odd
 
 // Which indices of tiles or blocks are known, and what has the parity of their floors.
-fn told_known(word: u32) -> vec3<bool> {
+fn index_table_known(word: u32) -> vec3<bool> {
     return (vec3u(word) & vec3u(2u, 8u, 32u)) != vec3u(0u);
 }
-fn told_odd(word: u32) -> vec3f {
+fn index_table_odd(word: u32) -> vec3f {
     return vec3f((vec3u(word) >> vec3u(0u, 2u, 4u)) & vec3u(1u));
 }
 //#end
@@ -117,16 +117,16 @@ fn told_odd(word: u32) -> vec3f {
 fn tplane_foreground(plane: Tiled, point: Point) -> bool {
     let position = point.position;
     let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
-    var clear = abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors); //~
+    var margin = abs(index - round(index)) - (plane.row_lengths * index_error(point) + plane.errors); //~
     var whole = floor3(vec3f(index, plane.parity + 0.5));
 //#if tables
-    if !all(clear > vec2f(0.0)) {
-        let word = told(point);
-        clear = select(clear, vec2f(1.0), told_known(word).xy);
-        whole = select(whole, told_odd(word), told_known(word));
+    if !all(margin > vec2f(0.0)) {
+        let word = index_table(point);
+        margin = select(margin, vec2f(1.0), index_table_known(word).xy);
+        whole = select(whole, index_table_odd(word), index_table_known(word));
     }
 //#end
-    certain(vec3f(clear, 1.0)); //~
+    certain(vec3f(margin, 1.0)); //~
     let odd = odd3(whole);
     return odd3(vec3f(odd.x + odd.y + odd.z)).x == 0.0;
 }
@@ -149,15 +149,15 @@ fn pplane_odd(at: PlanePoint, axes: vec3f) -> vec3f {
     let index = at.point.position * at.plane.per_unit + at.plane.fraction;
     var whole = floor3(index);
 //#if certified
-    var clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
+    var margin = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
 //#if tables
-    if !all(clear > vec3f(0.0)) {
-        let word = told(at.point);
-        clear = select(clear, vec3f(1.0), told_known(word));
-        whole = select(whole, told_odd(word), told_known(word));
+    if !all(margin > vec3f(0.0)) {
+        let word = index_table(at.point);
+        margin = select(margin, vec3f(1.0), index_table_known(word));
+        whole = select(whole, index_table_odd(word), index_table_known(word));
     }
 //#end
-    certain(select(vec3f(1.0), clear, axes > vec3f(0.0)));
+    certain(select(vec3f(1.0), margin, axes > vec3f(0.0)));
 //#end
     return odd3(whole + at.plane.parity);
 }
@@ -188,16 +188,16 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
     // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
     let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u) | any(size < vec2f(2.0)));
     let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)), select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
-    var clear = abs(index - edge) - (plane.spread * index_error(point) + plane.errors) + lone;
+    var margin = abs(index - edge) - (plane.row_lengths * index_error(point) + plane.errors) + lone;
 //#if tables
-    if !all(clear > vec2f(0.0)) {
-        let word = told(point);
+    if !all(margin > vec2f(0.0)) {
+        let word = index_table(point);
         let known = (vec2u(word) & vec2u(0x8000u, 0x80000000u)) != vec2u(0u);
         index = select(index, vec2f((vec2u(word) >> vec2u(0u, 16u)) & vec2u(0x7fffu)) + 0.5, known);
-        clear = select(clear, vec2f(1.0), known);
+        margin = select(margin, vec2f(1.0), known);
     }
 //#end
-    certain(vec3f(clear, 1048576.0 - max(abs(index.x), abs(index.y))));
+    certain(vec3f(margin, 1048576.0 - max(abs(index.x), abs(index.y))));
 //#end
     var p = floor3(vec3f(index, 0.5)).xy;
     if plane.repeats != 0u {

@@ -12,7 +12,7 @@ const STEPS_LIMIT = 50000u;
 //#if lit
 
 // What the lights and the light that is everywhere make of a point, seen by a ray.
-fn shade(point: Point, seen: Beam) -> Shade {
+fn shade(point: Point, seen: SecondaryRay) -> Shade {
     var sum = getamb(point);
     let diffuse = getdiff(point);
     steps += 1u;
@@ -84,7 +84,7 @@ fn ray_trace(ray: Ray) -> Traced {
     }
 //#end
     let hit = find_closest_object(ray);
-//#if tiles
+//#if screen_grid
     if !hit.decided {
         traced.verdict = UNDECIDED;
         return traced;
@@ -104,13 +104,13 @@ fn ray_trace(ray: Ray) -> Traced {
     let t = ray.w2 * ray.inverse_length / hit.inverse;
     let t_error = t * (SECOND_ORDER * hit.error / hit.inverse + LENGTH_ERROR); //~
 //#if branches
-    var met: PathPoint;
-    met.point = locate(ray, hit);
-    met.t = t;
-    met.t_error = t_error; //~
-    follow(&traced, primary_beam(ray), met);
+    var next_hit: PathPoint;
+    next_hit.point = locate(ray, hit);
+    next_hit.t = t;
+    next_hit.t_error = t_error; //~
+    follow(&traced, as_secondary_ray(ray), next_hit);
 //#else
-    let lit = shade(locate(ray, hit), primary_beam(ray));
+    let lit = shade(locate(ray, hit), as_secondary_ray(ray));
     let share = CAMERA_GAIN / t;
     traced.color = share * lit.color;
     traced.error = share * (lit.error + lit.color * (SECOND_ORDER * t_error / t + 12.0 * U)); //~

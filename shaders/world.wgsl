@@ -1,7 +1,7 @@
 // What a ray from anywhere meets first. Referee: src/cpu/world.rs.
 
 // A ray from anywhere; positions are from the viewpoint.
-struct Beam {
+struct SecondaryRay {
     base: vec3f,
     // Of unit length.
     dir: vec3f,
@@ -30,7 +30,7 @@ struct Range {
 }
 
 // A surface as a ray meets it.
-struct Meeting {
+struct Intersection {
     // Distance along the ray, where `hit`.
     t: f32,
     // For sure, where pixels are certified.
@@ -40,7 +40,7 @@ struct Meeting {
     // Whether it is met at all; if so, not before `low`.
     possible: bool,
     low: f32,
-//#if clear
+//#if transparent
     // And not after this.
     high: f32,
 //#end
@@ -48,7 +48,7 @@ struct Meeting {
 }
 
 // The closest hit: its distance, and the object; NOTHING if there is none.
-struct Met {
+struct SecondaryHit {
     t: f32,
     object: u32,
 //#if certified
@@ -66,34 +66,34 @@ const NOTHING = 0xffffffffu;
 const T_MAX = 1e30f;
 
 // Takes a hit if it is nearer, or as near and first in the file.
-fn met_nearer(closest: ptr<function, Met>, meeting: Meeting, object: u32, group: u32, range: Range) {
+fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersection, object: u32, group: u32, range: Range) {
 //#if certified
     let fresh = group != (*closest).group;
-    var hit = meeting.hit & fresh;
-    var possible = meeting.possible & fresh;
-//#if clear
+    var hit = intersection.hit & fresh;
+    var possible = intersection.possible & fresh;
+//#if transparent
     let from_start = range.beyond == 0.0;
-    possible &= from_start | (meeting.high - range.beyond > -range.beyond_error);
-    hit &= from_start | (meeting.low - range.beyond > range.beyond_error);
+    possible &= from_start | (intersection.high - range.beyond > -range.beyond_error);
+    hit &= from_start | (intersection.low - range.beyond > range.beyond_error);
 //#end
-    let takes = hit & (meeting.t < (*closest).t);
-    let low = select(T_MAX, meeting.low, possible);
+    let takes = hit & (intersection.t < (*closest).t);
+    let low = select(T_MAX, intersection.low, possible);
     (*closest).rival = min((*closest).rival, select(low, (*closest).low, takes));
     (*closest).low = select((*closest).low, low, takes);
-    (*closest).error = select((*closest).error, meeting.error, takes);
+    (*closest).error = select((*closest).error, intersection.error, takes);
     (*closest).group = select((*closest).group, group, takes);
 //#else
-    let nearer = (meeting.t < (*closest).t) | ((meeting.t == (*closest).t) & (object < (*closest).object));
-    let takes = meeting.hit & (meeting.t > range.beyond) & nearer;
+    let nearer = (intersection.t < (*closest).t) | ((intersection.t == (*closest).t) & (object < (*closest).object));
+    let takes = intersection.hit & (intersection.t > range.beyond) & nearer;
 //#end
-    (*closest).t = select((*closest).t, meeting.t, takes);
+    (*closest).t = select((*closest).t, intersection.t, takes);
     (*closest).object = select((*closest).object, object, takes);
 }
 
 // The first object that the ray meets in range. The rounds of its loops count `weight` times: 1 where all lanes of a vector
-// ask together, LANES where they ask on their own. Certified, whether it is the first for sure is left to `met_sure`.
-fn closest_from(beam: Beam, range: Range, weight: u32) -> Met {
-    var closest: Met;
+// ask together, LANES where they ask on their own. Certified, whether it is the first for sure is left to `surely_closest`.
+fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
+    var closest: SecondaryHit;
     closest.object = NOTHING;
 //#if certified
     closest.t = T_MAX;
@@ -112,17 +112,17 @@ fn closest_from(beam: Beam, range: Range, weight: u32) -> Met {
 //#end
 //#if world_plane_loop
     for (var i = 0u; i < WORLD_PLANES; i += 1u) {
-        met_nearer(&closest, plane_hits_from(world_planes[i], beam, range), world_planes[i].object, world_planes[i].group, range);
+        nearer_secondary(&closest, plane_hits_from(world_planes[i], ray, range), world_planes[i].object, world_planes[i].group, range);
     }
 //#end
 //#if world_sphere_loop
     for (var i = WORLD_TREE; i < WORLD_SPHERES; i += 1u) {
-        met_nearer(&closest, sphere_hits_from(world_spheres[i], beam, range), world_spheres[i].object, world_spheres[i].group, range);
+        nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object, world_spheres[i].group, range);
     }
 //#end
 //#if bvh
-    var walk = bvh_begin(beam.base, beam.dir);
-    bvh_widen(&walk, beam); //~
+    var walk = bvh_begin(ray.base, ray.dir);
+    bvh_widen(&walk, ray); //~
     loop {
         let node = bvh[walk.index];
         steps += LANES * (2u + node.count);
@@ -130,7 +130,7 @@ fn closest_from(beam: Beam, range: Range, weight: u32) -> Met {
             break;
         }
         for (var i = node.first; i < node.first + node.count; i += 1u) {
-            met_nearer(&closest, sphere_hits_from(world_spheres[i], beam, range), world_spheres[i].object, world_spheres[i].group, range);
+            nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object, world_spheres[i].group, range);
         }
 //#if certified
         // What is truly nearer than the closest is entered before it.
@@ -149,14 +149,14 @@ fn closest_from(beam: Beam, range: Range, weight: u32) -> Met {
 //#if certified
 
 // Whether nothing else can be nearer than what was met, or nothing at all is met.
-fn met_sure(met: Met) -> bool {
-    return (met.rival - met.t > met.error + 4.0 * U * abs(met.t)) | ((met.object == NOTHING) & (met.rival >= T_MAX));
+fn surely_closest(hit: SecondaryHit) -> bool {
+    return (hit.rival - hit.t > hit.error + 4.0 * U * abs(hit.t)) | ((hit.object == NOTHING) & (hit.rival >= T_MAX));
 }
 //#end
 //#if any_hit
 
 // Nothing, perhaps something, or something stands in range: 0, 1, 2.
-fn anything_from(beam: Beam, range: Range) -> u32 {
+fn any_hit(ray: SecondaryRay, range: Range) -> u32 {
     var found = 0u;
 //#insert unrolled_any
 //#if world_loop
@@ -167,20 +167,20 @@ fn anything_from(beam: Beam, range: Range) -> u32 {
 //#end
 //#if world_plane_loop
     for (var i = 0u; (i < WORLD_PLANES) & (found != 2u); i += 1u) {
-        found = max(found, stands_before(plane_hits_from(world_planes[i], beam, range), range));
+        found = max(found, occludes(plane_hits_from(world_planes[i], ray, range), range));
     }
 //#end
 //#if world_sphere_loop
     for (var i = WORLD_TREE; (i < WORLD_SPHERES) & (found != 2u); i += 1u) {
-        found = max(found, stands_before(sphere_hits_from(world_spheres[i], beam, range), range));
+        found = max(found, occludes(sphere_hits_from(world_spheres[i], ray, range), range));
     }
 //#end
 //#if bvh
     if found == 2u {
         return found;
     }
-    var walk = bvh_begin(beam.base, beam.dir);
-    bvh_widen(&walk, beam); //~
+    var walk = bvh_begin(ray.base, ray.dir);
+    bvh_widen(&walk, ray); //~
     loop {
         let node = bvh[walk.index];
         steps += LANES * (2u + node.count);
@@ -188,7 +188,7 @@ fn anything_from(beam: Beam, range: Range) -> u32 {
             return 2u;
         }
         for (var i = node.first; (i < node.first + node.count) & (found != 2u); i += 1u) {
-            found = max(found, stands_before(sphere_hits_from(world_spheres[i], beam, range), range));
+            found = max(found, occludes(sphere_hits_from(world_spheres[i], ray, range), range));
         }
 //#if certified
         if found == 2u || !bvh_next(&walk, range.limit + range.limit_error) {
@@ -205,14 +205,14 @@ fn anything_from(beam: Beam, range: Range) -> u32 {
 }
 
 // Whether a surface stands before the end of the range: 0 no, 1 perhaps, 2 yes.
-fn stands_before(meeting: Meeting, range: Range) -> u32 {
+fn occludes(intersection: Intersection, range: Range) -> u32 {
 //#if certified
-    let left = range.limit - meeting.t;
-    let yes = meeting.hit & (left > meeting.error + range.limit_error);
-    let no = !meeting.possible | (meeting.low - range.limit > range.limit_error);
+    let left = range.limit - intersection.t;
+    let yes = intersection.hit & (left > intersection.error + range.limit_error);
+    let no = !intersection.possible | (intersection.low - range.limit > range.limit_error);
     return select(select(1u, 0u, no), 2u, yes);
 //#else
-    return select(0u, 2u, meeting.hit & (meeting.t < range.limit));
+    return select(0u, 2u, intersection.hit & (intersection.t < range.limit));
 //#end
 }
 //#end

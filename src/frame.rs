@@ -13,18 +13,18 @@ pub struct Band {
     /// The values before quantising (1.0 is byte 255), in the same order, if they were asked for.
     pub values: Option<Vec<[f32; 3]>>,
     /// What decided each pixel, in the same order, if it was asked for.
-    pub verdicts: Option<Vec<Stage>>,
+    pub verdicts: Option<Vec<DecidedBy>>,
 }
 
 /// Takes finished bands; an error ends the rendering.
 pub type Emit<'a> = dyn FnMut(&Band) -> io::Result<()> + Send + 'a;
 
 /// Asked now and then by whoever renders: whether nobody wants the picture any more.
-pub type Stop<'a> = dyn Fn() -> bool + Sync + 'a;
+pub type StopRequested<'a> = dyn Fn() -> bool + Sync + 'a;
 
 /// What decided a pixel, from the cheapest to the dearest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Stage {
+pub enum DecidedBy {
     /// The GPU, in f32, and it was sure.
     Gpu,
     /// The CPU, in f32, likewise.
@@ -39,8 +39,8 @@ pub enum Stage {
     Presumed,
 }
 
-impl Stage {
-    /// Every stage, in order; each stands at its own number.
+impl DecidedBy {
+    /// All of them, in order; each stands at its own number.
     pub const ALL: [Self; 6] = [
         Self::Gpu,
         Self::Single,
@@ -71,7 +71,7 @@ pub struct Decided {
     /// The bytes.
     pub bytes: [u8; 3],
     /// What decided them.
-    pub stage: Stage,
+    pub by: DecidedBy,
 }
 
 /// What is known of a pixel of several samples before the CPU decides it: the share of those that the GPU is sure of.

@@ -23,7 +23,7 @@ pub struct Settings {
     /// Rays a pixel: 1 goes through its middle, more are spread and their mean is taken.
     pub samples: u32,
     /// How several samples are spread.
-    pub jitter: Spread,
+    pub jitter: SamplePattern,
     /// How far rays are followed.
     pub limits: Limits,
     /// Part of the name of the adapter to use, in any case of letters.
@@ -46,7 +46,7 @@ impl Default for Settings {
             rows: None,
             screen_tolerance: 0.0,
             samples: 1,
-            jitter: Spread::Hash,
+            jitter: SamplePattern::Hash,
             limits: Limits::default(),
             backend: Backend::Auto,
             adapter: None,
@@ -79,15 +79,15 @@ impl Settings {
         match self.supersampling() {
             None => Jitter::Once,
             Some(Supersampling { samples, spread }) => match spread {
-                Spread::Hash => Jitter::Hash(samples),
-                Spread::Course => Jitter::Course(Course::new(width, end, samples)),
+                SamplePattern::Hash => Jitter::Hash(samples),
+                SamplePattern::Course => Jitter::Course(Course::new(width, end, samples)),
             },
         }
     }
 
     /// How the scene is looked at.
-    pub fn view(&self) -> View {
-        View {
+    pub fn view(&self) -> ViewParameters {
+        ViewParameters {
             screen_tolerance: self.screen_tolerance,
             margin: self.supersampling().map_or(0.0, |_| 0.5),
         }
@@ -119,19 +119,19 @@ pub struct Supersampling {
     /// How many: at least two.
     pub samples: u32,
     /// How they are spread.
-    pub spread: Spread,
+    pub spread: SamplePattern,
 }
 
 /// How the scene is looked at, beyond what it says itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct ViewParameters {
     /// τ: a hit on a plane counts only where its z is ≤ this; 0 in the notes.
     pub screen_tolerance: f64,
     /// How far from its pixel's center a ray may pass, in pixels: 0, or ½ with several samples.
     pub margin: f64,
 }
 
-impl From<f64> for View {
+impl From<f64> for ViewParameters {
     /// The view with this screen tolerance, a ray a pixel.
     fn from(screen_tolerance: f64) -> Self {
         Self {
@@ -144,7 +144,7 @@ impl From<f64> for View {
 /// How the samples of a pixel are spread over it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Spread {
+pub enum SamplePattern {
     /// By a hash of column, row and sample: any row can be rendered alone.
     #[default]
     Hash,
@@ -152,7 +152,7 @@ pub enum Spread {
     Course,
 }
 
-impl Spread {
+impl SamplePattern {
     /// What spreads the samples, for people.
     pub fn meaning(self) -> &'static str {
         match self {

@@ -23,24 +23,24 @@ fn make_pixel(pixel: vec2i) -> u32 {
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let column = 4u * id.x;
-    if (column >= job.size.x) | (id.y >= job.size.y) {
+    if (column >= dispatch.size.x) | (id.y >= dispatch.size.y) {
         return;
     }
     // Rows of the picture go down, y goes up.
-    let pixel = vec2i(i32(job.first.x + column), i32(job.first.y) - i32(id.y));
-    pixels[id.y * ((job.size.x + 3u) / 4u) + id.x] = vec4u(make_pixel(pixel), make_pixel(pixel + vec2i(1, 0)),
+    let pixel = vec2i(i32(dispatch.first.x + column), i32(dispatch.first.y) - i32(id.y));
+    pixels[id.y * ((dispatch.size.x + 3u) / 4u) + id.x] = vec4u(make_pixel(pixel), make_pixel(pixel + vec2i(1, 0)),
         make_pixel(pixel + vec2i(2, 0)), make_pixel(pixel + vec2i(3, 0)));
 }
 //#else
 
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= job.size) {
+    if any(id.xy >= dispatch.size) {
         return;
     }
     // Rows of the picture go down, y goes up.
-    let pixel = vec2i(i32(job.first.x + id.x), i32(job.first.y) - i32(id.y));
-    let place = id.y * job.size.x + id.x;
+    let pixel = vec2i(i32(dispatch.first.x + id.x), i32(dispatch.first.y) - i32(id.y));
+    let place = id.y * dispatch.size.x + id.x;
 //#if any_object
 //#if samples
     var traced: Traced;
@@ -100,8 +100,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if partial
     if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
         let record = atomicAdd(&pixels.partials, 1u);
-        if record < job.room {
-            let first = job.size.x * job.size.y + record * PARTIAL_WORDS;
+        if record < dispatch.room {
+            let first = dispatch.size.x * dispatch.size.y + record * PARTIAL_WORDS;
             let color = bitcast<vec3u>(part.color);
             let error = bitcast<vec3u>(part.error);
             pixels.words[first] = place;

@@ -1,6 +1,6 @@
 //! Runs a shader over rows of a picture, one dispatch after the other, and hands on what it wrote.
 //!
-//! For the shaders that only this report has. They share `gpu`'s uniform [`Job`] and nothing else with `gpu::bands`, which
+//! For the shaders that only this report has. They share `gpu`'s uniform [`Dispatch`] and nothing else with `gpu::bands`, which
 //! does much more: overlapping, assembling, verdicts.
 
 use std::ops::Range;
@@ -11,7 +11,7 @@ use bytemuck::Zeroable;
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::shader::constants::WORKGROUP;
-use crate::shader::records::Job;
+use crate::shader::records::Dispatch;
 
 /// Pixels of the first dispatch, whose speed is not known yet.
 const FIRST: u64 = 1 << 16;
@@ -25,7 +25,7 @@ pub struct Runner<'a> {
     gpu: &'a Gpu,
     pipeline: &'a wgpu::ComputePipeline,
     group: wgpu::BindGroup,
-    job: wgpu::Buffer,
+    dispatch: wgpu::Buffer,
     pixels: wgpu::Buffer,
     staging: wgpu::Buffer,
     clock: Option<[wgpu::Buffer; 2]>,
@@ -36,7 +36,7 @@ pub struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    /// For pictures that are `width` pixels wide. `bind` binds the job and the pixels that it is given, with what else the
+    /// For pictures that are `width` pixels wide. `bind` binds the dispatch's record and the pixels that it is given, with what else the
     /// shader reads.
     pub fn new(
         gpu: &'a Gpu,
@@ -55,9 +55,9 @@ impl<'a> Runner<'a> {
             })
         };
         let most = MOST.max(u64::from(width));
-        let job = buffer(
-            "job",
-            size_of::<Job>() as u64,
+        let dispatch = buffer(
+            "dispatch",
+            size_of::<Dispatch>() as u64,
             Usage::UNIFORM | Usage::COPY_DST,
         );
         let pixels = buffer(
@@ -81,12 +81,12 @@ impl<'a> Runner<'a> {
                 count: 2,
             })
         });
-        let group = bind(&job, &pixels);
+        let group = bind(&dispatch, &pixels);
         Self {
             gpu,
             pipeline,
             group,
-            job,
+            dispatch,
             pixels,
             staging,
             clock,
@@ -137,13 +137,13 @@ impl<'a> Runner<'a> {
         let gpu = self.gpu;
         let height = rows.end - rows.start;
         let bytes = u64::from(height) * u64::from(self.width) * self.pixel_bytes;
-        let job = Job {
+        let dispatch = Dispatch {
             first: [0, rows.end - 1],
             size: [self.width, height],
-            ..Job::zeroed()
+            ..Dispatch::zeroed()
         };
         gpu.queue
-            .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+            .write_buffer(&self.dispatch, 0, bytemuck::bytes_of(&dispatch));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
             let timestamp_writes =

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::statistics::{quantile, sorted};
-use super::truth::{Met, Seen};
+use super::truth::{FirstObject, PixelHit};
 use crate::image::{Comparison, Picture, SizesDiffer, compare};
 
 /// How far a picture is from the true one.
@@ -65,15 +65,15 @@ impl TError {
     /// Compares first hits with the true ones, of which each comes with how far its t may be off; both are of the same pixels,
     /// in the same order. That is added to the error, which is never more than said. None where not one is hit in both.
     #[must_use]
-    pub fn new(truth: &[(Seen, f64)], hits: &[Seen]) -> Option<Self> {
+    pub fn new(truth: &[(PixelHit, f64)], hits: &[PixelHit]) -> Option<Self> {
         let mut errors = Vec::new();
         let mut other_object = 0;
         let mut left_out = 0;
         for ((truth, off), hit) in truth.iter().zip(hits) {
             match (truth.object, hit.object) {
-                (Met::Unsure, _) | (_, Met::Unsure) => left_out += 1,
-                (Met::Nothing, Met::Nothing) => {}
-                (Met::Object(a), Met::Object(b)) if a == b => {
+                (FirstObject::Unsure, _) | (_, FirstObject::Unsure) => left_out += 1,
+                (FirstObject::Nothing, FirstObject::Nothing) => {}
+                (FirstObject::Object(a), FirstObject::Object(b)) if a == b => {
                     errors.push(((hit.t - truth.t).abs() + off) / ulp(truth.t));
                 }
                 _ => other_object += 1,
@@ -111,9 +111,9 @@ mod tests {
         }
     }
 
-    fn seen(object: u32, t: f64) -> Seen {
-        Seen {
-            object: Met::Object(object),
+    fn seen(object: u32, t: f64) -> PixelHit {
+        PixelHit {
+            object: FirstObject::Object(object),
             t,
         }
     }
@@ -144,12 +144,12 @@ mod tests {
     #[test]
     fn distances_with_known_errors() {
         let step = 2f64.powi(-23);
-        let nothing = Seen {
-            object: Met::Nothing,
+        let nothing = PixelHit {
+            object: FirstObject::Nothing,
             t: 0.0,
         };
-        let unsure = Seen {
-            object: Met::Unsure,
+        let unsure = PixelHit {
+            object: FirstObject::Unsure,
             t: 0.0,
         };
         let truth = [

@@ -3,7 +3,7 @@
 //! Every function of theirs is as it is where a picture is rendered.
 
 use super::dispatch::Runner;
-use super::truth::{Met, Seen};
+use super::truth::{FirstObject, PixelHit};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Pipeline;
@@ -36,23 +36,27 @@ pub fn hits(
     settings: &Settings,
     width: u32,
     rows: &[u32],
-) -> Result<Vec<Seen>, GpuError> {
+) -> Result<Vec<PixelHit>, GpuError> {
     let Some((wgsl, features)) = wgsl(packed, settings, gpu.lanes) else {
-        let nothing = Seen {
-            object: Met::Nothing,
+        let nothing = PixelHit {
+            object: FirstObject::Nothing,
             t: 0.0,
         };
         return Ok(vec![nothing; rows.len() * width as usize]);
     };
     let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
-    let bind = |job: &_, pixels: &_| pipeline.bind(gpu, job, pixels, None);
+    let bind = |dispatch: &_, pixels: &_| pipeline.bind(gpu, dispatch, pixels, None);
     let runner = Runner::new(gpu, &pipeline.pipeline, 16, width, bind);
     let unit = two_to(packed.scale);
     let mut seen = Vec::with_capacity(rows.len() * width as usize);
     runner.picked(rows, |pixels| {
-        seen.extend(pixels.iter().map(|&[t, object, ..]| Seen {
-            object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
-            t: f64::from(f32::from_bits(t)) * unit,
+        seen.extend(pixels.iter().map(|&[t, object, ..]| {
+            PixelHit {
+                object: object
+                    .checked_sub(1)
+                    .map_or(FirstObject::Nothing, FirstObject::Object),
+                t: f64::from(f32::from_bits(t)) * unit,
+            }
         }));
     })?;
     Ok(seen)

@@ -50,11 +50,11 @@ pub(super) fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -
         });
         let candidates: Vec<[f64; 4]> = around.map(|(dx, dy)| label(dx, dy)).collect();
         let free = |label: &&[f64; 4]| !taken.iter().any(|other| overlap(label, other));
-        let clear =
+        let is_free =
             |label: &&[f64; 4]| free(label) && !marks.iter().any(|mark| overlap(label, mark));
         let chosen = candidates
             .iter()
-            .find(clear)
+            .find(is_free)
             .or_else(|| candidates.iter().find(free))
             .unwrap_or(&candidates[0]);
         taken.push(*chosen);

@@ -10,11 +10,11 @@ use super::error::TError;
 use super::first_hit;
 use super::statistics::Times;
 use super::textbook::{self, Textbook, TextbookError};
-use super::truth::{self, Met, Seen};
+use super::truth::{self, FirstObject, PixelHit};
 use super::ways::Way;
-use crate::certify::Stage;
+use crate::certify::DecidedBy;
 use crate::cpu::camera::camera_setpix;
-use crate::cpu::trace::{Unwatched, ray_trace};
+use crate::cpu::trace::{Unobserved, ray_trace};
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::{GpuError, bands};
@@ -43,7 +43,7 @@ pub struct Subject<'a> {
     /// The rows whose distances are compared, from the bottom.
     pub rows: Vec<u32>,
     /// What their pixels truly see, and how far those distances may be off.
-    pub hits: Vec<(Seen, f64)>,
+    pub hits: Vec<(PixelHit, f64)>,
 }
 
 /// What a way was measured to do.
@@ -87,7 +87,7 @@ impl From<TextbookError> for Unmeasured {
 /// A picture with its report, as `render` makes it.
 struct Frame {
     picture: Picture,
-    verdicts: Vec<Stage>,
+    verdicts: Vec<DecidedBy>,
     report: render::Report,
     /// Seconds, opening and closing the device apart.
     seconds: f64,
@@ -170,7 +170,7 @@ impl Subject<'_> {
             kernels.push(frame.report.seconds.phases.get(Phase::Trace));
         }
         // The truth about t is this way's own.
-        let hits: Vec<Seen> = self.hits.iter().map(|(seen, _)| *seen).collect();
+        let hits: Vec<PixelHit> = self.hits.iter().map(|(seen, _)| *seen).collect();
         Ok(Measured {
             picture: warm_up.picture,
             t: self.compared(&hits),
@@ -188,10 +188,10 @@ impl Subject<'_> {
         };
         let [width, height] = self.scene.camera.pixeldim;
         let mut rgb = Vec::with_capacity(3 * width as usize * height as usize);
-        let mut stages = Vec::new();
+        let mut verdicts = Vec::new();
         let report = render(self.scene, &settings, &mut |band| {
             rgb.extend_from_slice(&band.rgb);
-            stages.extend(band.verdicts.iter().flatten());
+            verdicts.extend(band.verdicts.iter().flatten());
             Ok(())
         });
         let report = match report {
@@ -210,7 +210,7 @@ impl Subject<'_> {
         .sum();
         Ok(Frame {
             picture: Picture { width, height, rgb },
-            verdicts: stages,
+            verdicts,
             seconds: report.seconds.total - opening,
             report,
         })
@@ -298,20 +298,20 @@ impl Subject<'_> {
         times(warm_up, runs)
     }
 
-    fn compared(&self, hits: &[Seen]) -> Option<TError> {
+    fn compared(&self, hits: &[PixelHit]) -> Option<TError> {
         TError::new(&self.hits, hits)
     }
 
     /// Pixels that the GPU was not sure of have no distance of its own: the CPU decided them.
-    fn leave_out(&self, hits: &mut [Seen], verdicts: &[Stage]) {
+    fn leave_out(&self, hits: &mut [PixelHit], verdicts: &[DecidedBy]) {
         let [width, height] = self.scene.camera.pixeldim.map(|n| n as usize);
         for (line, y) in hits.chunks_mut(width).zip(&self.rows) {
             // The picture's top row comes first.
             let row = height - 1 - *y as usize;
             let verdicts = &verdicts[row * width..(row + 1) * width];
-            for (seen, stage) in line.iter_mut().zip(verdicts) {
-                if *stage != Stage::Gpu {
-                    seen.object = Met::Unsure;
+            for (seen, by) in line.iter_mut().zip(verdicts) {
+                if *by != DecidedBy::Gpu {
+                    seen.object = FirstObject::Unsure;
                 }
             }
         }
@@ -336,7 +336,7 @@ fn plain(scene: &Scene, settings: &Settings) -> (Picture, f64, f64) {
         .for_each(|(line, y)| {
             for (pixel, x) in line.as_chunks_mut::<3>().0.iter_mut().zip(0u32..) {
                 let (x, y) = (f64::from(x), f64::from(y));
-                let traced = ray_trace(&prepared, &limits, x, y, &mut Unwatched);
+                let traced = ray_trace(&prepared, &limits, x, y, &mut Unobserved);
                 // What is not a number stays black.
                 *pixel = traced
                     .ok()

@@ -7,7 +7,9 @@ use serde::Serialize;
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::light::Lit;
 use crate::cpu::surface::Point;
-use crate::cpu::trace::{Branch, Fault, Limits, Unmet, Watch, find_closest_object, ray_trace};
+use crate::cpu::trace::{
+    Branch, Fault, Limits, TraceObserver, Unmet, find_closest_object, ray_trace,
+};
 use crate::prepare::Prepared;
 use crate::real::rational::two_to;
 use crate::real::{Bounded, Real, V3};
@@ -21,7 +23,7 @@ const MOST_COUNTED: u64 = 1 << 16;
 
 /// What a primary ray meets first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Met {
+pub enum FirstObject {
     /// Nothing.
     Nothing,
     /// The object with this index in the scene.
@@ -32,9 +34,9 @@ pub enum Met {
 
 /// What a pixel sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct PixelHit {
     /// What its ray meets first.
-    pub object: Met,
+    pub object: FirstObject,
     /// How far away, in world units; where an object is met.
     pub t: f64,
 }
@@ -57,7 +59,7 @@ fn some_rows(scene: &Scene, most: u64) -> Vec<u32> {
 
 /// What the pixels of these rows see, row by row, from the left; and how far t may be off.
 #[must_use]
-pub fn hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<(Seen, f64)> {
+pub fn hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<(PixelHit, f64)> {
     let prepared = Prepared::<Bounded>::new(scene, settings.view());
     first_hits(&prepared, scene, rows, |t| {
         (t.value, t.error * Bounded::GROW)
@@ -66,7 +68,7 @@ pub fn hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<(Seen, f64)
 
 /// The same in plain f64.
 #[must_use]
-pub fn plain_hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<Seen> {
+pub fn plain_hits(scene: &Scene, settings: &Settings, rows: &[u32]) -> Vec<PixelHit> {
     let prepared = Prepared::<f64>::new(scene, settings.view());
     let hits = first_hits(&prepared, scene, rows, |t| (t, 0.0));
     hits.into_iter().map(|(seen, _)| seen).collect()
@@ -77,19 +79,23 @@ fn first_hits<R: Real>(
     scene: &Scene,
     rows: &[u32],
     known: impl Fn(R) -> (f64, f64) + Sync,
-) -> Vec<(Seen, f64)> {
+) -> Vec<(PixelHit, f64)> {
     let unit = two_to(prepared.camera.scale);
     let pixel = |x: u32, y: u32| {
         let ray = camera_getdir(&prepared.camera, f64::from(x), f64::from(y));
         let (object, t, error) = match find_closest_object(prepared, &ray) {
-            Err(_) => (Met::Unsure, 0.0, 0.0),
-            Ok(None) => (Met::Nothing, 0.0, 0.0),
+            Err(_) => (FirstObject::Unsure, 0.0, 0.0),
+            Ok(None) => (FirstObject::Nothing, 0.0, 0.0),
             Ok(Some(hit)) => {
                 let (t, error) = known(ray.w2.sqrt() / hit.inverse);
-                (Met::Object(hit.object as u32), t * unit, error * unit)
+                (
+                    FirstObject::Object(hit.object as u32),
+                    t * unit,
+                    error * unit,
+                )
             }
         };
-        (Seen { object, t }, error)
+        (PixelHit { object, t }, error)
     };
     let width = scene.camera.pixeldim[0];
     rows.par_iter()
@@ -162,7 +168,7 @@ struct Count {
     shadow: u64,
 }
 
-impl Watch<f64> for Count {
+impl TraceObserver<f64> for Count {
     fn missed(&mut self, number: u32, _: &Branch<f64>, why: Unmet) {
         self.secondary += u64::from(number > 0 && why == Unmet::Nothing);
     }
@@ -198,7 +204,7 @@ mod tests {
         assert_eq!(rows, [0, 1, 2]);
         let hits = hits(&scene, &Settings::default(), &rows);
         let (middle, error) = hits[4];
-        assert_eq!(middle.object, Met::Object(0));
+        assert_eq!(middle.object, FirstObject::Object(0));
         assert!((middle.t - 3.0).abs() <= error && error < 1e-14);
         // The corner's ray is √3 times as long.
         assert!((hits[0].0.t - 27f64.sqrt()).abs() < 1e-14);

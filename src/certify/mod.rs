@@ -16,17 +16,17 @@ use std::time::Duration;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-pub use crate::frame::{Decided, Stage};
+pub use crate::frame::{Decided, DecidedBy};
 
 /// Places of presumed pixels that are kept to be named; of more only the number is known.
 const NAMED: usize = 8;
 
-/// How many pixels each stage decided.
+/// How many pixels each kind of arithmetic decided.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tally {
-    counts: [u64; Stage::ALL.len()],
+    counts: [u64; DecidedBy::ALL.len()],
     /// Seconds of CPU time, of all threads together; only single pixels are timed, not whole bands.
-    seconds: [f64; Stage::ALL.len()],
+    seconds: [f64; DecidedBy::ALL.len()],
     /// Samples that the CPU traced.
     samples: u64,
     /// Column and row (from the bottom) of the first presumed pixels met.
@@ -34,26 +34,26 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts pixels that were decided at a stage, without their time.
-    pub fn add(&mut self, stage: Stage, pixels: u64) {
-        self.counts[stage as usize] += pixels;
+    /// Counts pixels that one kind of arithmetic decided, without their time.
+    pub fn add(&mut self, by: DecidedBy, pixels: u64) {
+        self.counts[by as usize] += pixels;
     }
 
     /// Counts a pixel that the CPU decided, and the samples that it traced for it.
-    pub fn decided(&mut self, stage: Stage, at: [u32; 2], samples: u32, took: Duration) {
+    pub fn decided(&mut self, by: DecidedBy, at: [u32; 2], samples: u32, took: Duration) {
         self.samples += u64::from(samples);
-        self.add(stage, 1);
-        self.seconds[stage as usize] += took.as_secs_f64();
-        if stage == Stage::Presumed && self.presumed_at.len() < NAMED {
+        self.add(by, 1);
+        self.seconds[by as usize] += took.as_secs_f64();
+        if by == DecidedBy::Presumed && self.presumed_at.len() < NAMED {
             self.presumed_at.push(at);
         }
     }
 
     /// Counts what another counted.
     pub fn merge(mut self, other: Self) -> Self {
-        for stage in Stage::ALL {
-            self.counts[stage as usize] += other.counts[stage as usize];
-            self.seconds[stage as usize] += other.seconds[stage as usize];
+        for by in DecidedBy::ALL {
+            self.counts[by as usize] += other.counts[by as usize];
+            self.seconds[by as usize] += other.seconds[by as usize];
         }
         self.samples += other.samples;
         let room = NAMED - self.presumed_at.len();
@@ -62,9 +62,9 @@ impl Tally {
         self
     }
 
-    /// How many pixels a stage decided.
-    pub fn count(&self, stage: Stage) -> u64 {
-        self.counts[stage as usize]
+    /// How many pixels one kind of arithmetic decided.
+    pub fn count(&self, by: DecidedBy) -> u64 {
+        self.counts[by as usize]
     }
 
     /// All pixels.
@@ -82,38 +82,41 @@ impl Tally {
         &self.presumed_at
     }
 
-    /// The CPU seconds of each stage that was timed, to be printed.
-    pub fn times(&self) -> StageSeconds {
-        StageSeconds(self.seconds)
+    /// The CPU seconds of each kind of arithmetic that was timed, to be printed.
+    pub fn times(&self) -> CpuSeconds {
+        CpuSeconds(self.seconds)
     }
 }
 
-/// As a map from the stage's name to its number of pixels.
+/// As a map from the name of what decided to its number of pixels.
 impl Serialize for Tally {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         map(&self.counts, serializer)
     }
 }
 
-/// Seconds of CPU time by stage, of all threads together, for pixels that were decided one by one.
+/// Seconds of CPU time by what decided, of all threads together, for pixels that were decided one by one.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct StageSeconds([f64; Stage::ALL.len()]);
+pub struct CpuSeconds([f64; DecidedBy::ALL.len()]);
 
-/// As a map from the stage's name to its seconds; the GPU's are counted elsewhere.
-impl Serialize for StageSeconds {
+/// As a map from the name of what decided to its seconds; the GPU's are counted elsewhere.
+impl Serialize for CpuSeconds {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(Stage::ALL.len() - 1))?;
-        for stage in &Stage::ALL[1..] {
-            map.serialize_entry(stage.name(), &self.0[*stage as usize])?;
+        let mut map = serializer.serialize_map(Some(DecidedBy::ALL.len() - 1))?;
+        for by in &DecidedBy::ALL[1..] {
+            map.serialize_entry(by.name(), &self.0[*by as usize])?;
         }
         map.end()
     }
 }
 
-fn map<S: Serializer>(values: &[u64; Stage::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(Stage::ALL.len()))?;
-    for stage in Stage::ALL {
-        map.serialize_entry(stage.name(), &values[stage as usize])?;
+fn map<S: Serializer>(
+    values: &[u64; DecidedBy::ALL.len()],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(DecidedBy::ALL.len()))?;
+    for by in DecidedBy::ALL {
+        map.serialize_entry(by.name(), &values[by as usize])?;
     }
     map.end()
 }
@@ -124,22 +127,22 @@ mod tests {
 
     #[test]
     fn stages_stand_at_their_own_numbers() {
-        for (i, stage) in Stage::ALL.into_iter().enumerate() {
-            assert_eq!(stage as usize, i);
+        for (i, by) in DecidedBy::ALL.into_iter().enumerate() {
+            assert_eq!(by as usize, i);
         }
-        assert!(Stage::ALL.is_sorted());
+        assert!(DecidedBy::ALL.is_sorted());
     }
 
     #[test]
     fn tallies_add_up_and_name_few() {
         let mut a = Tally::default();
-        a.add(Stage::Gpu, 100);
+        a.add(DecidedBy::Gpu, 100);
         let mut b = Tally::default();
         for x in 0..20 {
-            b.decided(Stage::Presumed, [x, 7], 3, Duration::from_secs(1));
+            b.decided(DecidedBy::Presumed, [x, 7], 3, Duration::from_secs(1));
         }
         let sum = a.merge(b);
-        assert_eq!((sum.pixels(), sum.count(Stage::Presumed)), (120, 20));
+        assert_eq!((sum.pixels(), sum.count(DecidedBy::Presumed)), (120, 20));
         assert_eq!(sum.samples(), 60);
         assert_eq!(sum.presumed_at().len(), NAMED);
         let json = serde_json::to_value(&sum).unwrap();

@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::{Decided, Stage, Tally};
+use super::{Decided, DecidedBy, Tally};
 use crate::certify::lanes::{LANES, Lanes};
-use crate::cpu::pixel::Stages;
+use crate::cpu::pixel::ExactTracer;
 use crate::cpu::trace::Limits;
-use crate::frame::{Band, Halt, Stop};
+use crate::frame::{Band, Halt, StopRequested};
 use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
-use crate::prepare::View;
+use crate::prepare::ViewParameters;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -26,9 +26,9 @@ const PIECE: usize = 16;
 const FEW: usize = 128;
 
 /// What it takes to trace a pixel of a scene on the CPU.
-pub struct Tracer<'a> {
+pub struct PixelDecider<'a> {
     scene: &'a Scene,
-    view: View,
+    view: ViewParameters,
     limits: Limits,
     jitter: &'a Jitter,
     width: usize,
@@ -36,11 +36,11 @@ pub struct Tracer<'a> {
     values: bool,
     /// Whether bands tell what decided each pixel.
     verdicts: bool,
-    stop: &'a Stop<'a>,
-    stages: OnceLock<Stages<'a>>,
+    stop: &'a StopRequested<'a>,
+    exact_tracer: OnceLock<ExactTracer<'a>>,
 }
 
-impl<'a> Tracer<'a> {
+impl<'a> PixelDecider<'a> {
     /// For the scene's picture as the settings ask for it, whose samples are spread by `jitter`.
     pub fn new(scene: &'a Scene, settings: &Settings, jitter: &'a Jitter) -> Self {
         Self {
@@ -52,20 +52,20 @@ impl<'a> Tracer<'a> {
             values: settings.values,
             verdicts: settings.verdicts,
             stop: &|| false,
-            stages: OnceLock::new(),
+            exact_tracer: OnceLock::new(),
         }
     }
 
     /// Asks now and then whether to give up.
     #[must_use]
-    pub fn stopping(self, stop: &'a Stop<'a>) -> Self {
+    pub fn stopping(self, stop: &'a StopRequested<'a>) -> Self {
         Self { stop, ..self }
     }
 
     /// Prepares the scene, if that was not done yet.
-    pub fn stages(&self) -> &Stages<'a> {
-        self.stages
-            .get_or_init(|| Stages::new(self.scene, self.view).with_values(self.values))
+    pub fn exact_tracer(&self) -> &ExactTracer<'a> {
+        self.exact_tracer
+            .get_or_init(|| ExactTracer::new(self.scene, self.view).with_values(self.values))
     }
 
     /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is
@@ -123,7 +123,7 @@ impl<'a> Tracer<'a> {
         if (self.stop)() {
             return Err(Halt::Stopped);
         }
-        let stages = self.stages();
+        let exact_tracer = self.exact_tracer();
         let mut tally = Tally::default();
         let mut all = Vec::with_capacity(places.len());
         let mut before = Instant::now();
@@ -133,17 +133,17 @@ impl<'a> Tracer<'a> {
             let mut samples = sampling.samples();
             let mut completed = None;
             if let Some(part) = known.get(*place) {
-                completed = stages.complete(&self.limits, sampling, x, y, &part)?;
+                completed = exact_tracer.complete(&self.limits, sampling, x, y, &part)?;
                 if completed.is_some() {
                     samples -= part.samples().min(samples);
                 }
             }
             let decided = match completed {
                 Some(decided) => decided,
-                None => stages.trace(&self.limits, sampling, x, y)?,
+                None => exact_tracer.trace(&self.limits, sampling, x, y)?,
             };
             let after = Instant::now();
-            tally.decided(decided.stage, [x, y], samples, after - before);
+            tally.decided(decided.by, [x, y], samples, after - before);
             before = after;
             all.push(decided);
         }
@@ -156,7 +156,7 @@ impl<'a> Tracer<'a> {
         let pixels = width * rows.len();
         let mut rgb = vec![0; 3 * pixels];
         let mut values = vec![[0.0; 3]; if self.values { pixels } else { 0 }];
-        let mut verdicts = vec![Stage::Gpu; if self.verdicts { pixels } else { 0 }];
+        let mut verdicts = vec![DecidedBy::Gpu; if self.verdicts { pixels } else { 0 }];
         // Pieces of rows, small enough to share out, large enough not to cost.
         let piece = (pixels / (8 * rayon::current_num_threads()))
             .clamp(64, 8192)
@@ -217,7 +217,7 @@ impl<'a> Tracer<'a> {
             values,
             verdicts,
         } = strip;
-        let stages = self.stages();
+        let exact_tracer = self.exact_tracer();
         let mut tally = Tally::default();
         for (chunk, bytes) in bytes.chunks_mut(3 * LANES).enumerate() {
             let start = chunk * LANES;
@@ -227,26 +227,26 @@ impl<'a> Tracer<'a> {
             bytes.copy_from_slice(&eight.bytes.as_flattened()[..bytes.len()]);
             let sure = &eight.sure[..bytes.len() / 3];
             let quick = sure.iter().filter(|sure| **sure).count();
-            tally.add(Stage::Single, quick as u64);
+            tally.add(DecidedBy::Single, quick as u64);
             if quick == LANES && verdicts.is_empty() {
                 continue;
             }
             for (lane, pixel) in bytes.chunks_exact_mut(3).enumerate() {
                 let (i, x) = (start + lane, first + start + lane);
-                let mut stage = Stage::Single;
+                let mut by = DecidedBy::Single;
                 if !sure[lane] {
                     let sampling = self.jitter.pixel(offsets, self.width, x);
-                    let decided = stages.trace(&self.limits, sampling, x as u32, y)?;
-                    stage = decided.stage;
+                    let decided = exact_tracer.trace(&self.limits, sampling, x as u32, y)?;
+                    by = decided.by;
                     let at = [x as u32, y];
-                    tally.decided(stage, at, sampling.samples(), Duration::ZERO);
+                    tally.decided(by, at, sampling.samples(), Duration::ZERO);
                     pixel.copy_from_slice(&decided.bytes);
                     if let Some(value) = values.get_mut(i) {
                         *value = decided.value;
                     }
                 }
                 if let Some(verdict) = verdicts.get_mut(i) {
-                    *verdict = stage;
+                    *verdict = by;
                 }
             }
         }
@@ -261,7 +261,7 @@ struct Strip<'a> {
     y: u32,
     bytes: &'a mut [u8],
     values: &'a mut [[f32; 3]],
-    verdicts: &'a mut [Stage],
+    verdicts: &'a mut [DecidedBy],
 }
 
 /// Pieces of `size`, or as many empty ones.

@@ -1,28 +1,28 @@
 //! What decided each pixel, as a picture: `plumb render --verdicts`.
 
-use crate::frame::{Band, Stage};
+use crate::frame::{Band, DecidedBy};
 
-/// The colour of a stage. Grey is what needed no second look; the brighter, the more it took.
-pub fn color(stage: Stage) -> [u8; 3] {
-    match stage {
-        Stage::Gpu => [40, 40, 40],
-        Stage::Single => [80, 80, 80],
-        Stage::Bounded => [60, 110, 200],
-        Stage::Multiprecision => [240, 228, 66],
-        Stage::Exact => [240, 240, 240],
-        Stage::Presumed => [230, 30, 30],
+/// The colour of what decided a pixel. Grey needed no second look; the brighter, the more it took.
+pub fn color(by: DecidedBy) -> [u8; 3] {
+    match by {
+        DecidedBy::Gpu => [40, 40, 40],
+        DecidedBy::Single => [80, 80, 80],
+        DecidedBy::Bounded => [60, 110, 200],
+        DecidedBy::Multiprecision => [240, 228, 66],
+        DecidedBy::Exact => [240, 240, 240],
+        DecidedBy::Presumed => [230, 30, 30],
     }
 }
 
-/// What a stage is, for people.
-pub fn meaning(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Gpu => "the GPU, which is sure",
-        Stage::Single => "f32 with error bounds, on the CPU",
-        Stage::Bounded => "f64 with error bounds",
-        Stage::Multiprecision => "intervals of many bits",
-        Stage::Exact => "exact arithmetic: it lies on a border exactly",
-        Stage::Presumed => "nothing: so near a border that it is presumed to lie on it",
+/// What decided a pixel, for people.
+pub fn meaning(by: DecidedBy) -> &'static str {
+    match by {
+        DecidedBy::Gpu => "the GPU, which is sure",
+        DecidedBy::Single => "f32 with error bounds, on the CPU",
+        DecidedBy::Bounded => "f64 with error bounds",
+        DecidedBy::Multiprecision => "intervals of many bits",
+        DecidedBy::Exact => "exact arithmetic: it lies on a border exactly",
+        DecidedBy::Presumed => "nothing: so near a border that it is presumed to lie on it",
     }
 }
 
@@ -31,7 +31,7 @@ pub fn paint(band: &Band) -> Option<Band> {
     let verdicts = band.verdicts.as_ref()?;
     Some(Band {
         rows: band.rows.clone(),
-        rgb: verdicts.iter().flat_map(|stage| color(*stage)).collect(),
+        rgb: verdicts.iter().flat_map(|by| color(*by)).collect(),
         values: None,
         verdicts: None,
     })
@@ -43,8 +43,8 @@ mod tests {
 
     #[test]
     fn every_stage_has_a_colour_of_its_own() {
-        let colors: std::collections::BTreeSet<_> = Stage::ALL.into_iter().map(color).collect();
-        assert_eq!(colors.len(), Stage::ALL.len());
+        let colors: std::collections::BTreeSet<_> = DecidedBy::ALL.into_iter().map(color).collect();
+        assert_eq!(colors.len(), DecidedBy::ALL.len());
     }
 
     #[test]
@@ -56,12 +56,12 @@ mod tests {
             verdicts: None,
         };
         assert_eq!(paint(&band), None);
-        band.verdicts = Some(vec![Stage::Gpu, Stage::Presumed]);
+        band.verdicts = Some(vec![DecidedBy::Gpu, DecidedBy::Presumed]);
         let painted = paint(&band).unwrap();
         assert_eq!(painted.rows, 3..4);
         assert_eq!(
             painted.rgb,
-            [color(Stage::Gpu), color(Stage::Presumed)].concat()
+            [color(DecidedBy::Gpu), color(DecidedBy::Presumed)].concat()
         );
     }
 }

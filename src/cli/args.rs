@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use clap::builder::NonEmptyStringValueParser;
 use plumb::cpu::debug::Shown;
 use plumb::cpu::trace::Limits;
-use plumb::render::{Backend, Precision, Settings, Spread};
+use plumb::render::{Backend, Precision, SamplePattern, Settings};
 use plumb::scene::Scene;
 use plumb::settings::Supersampling;
 
@@ -110,7 +110,7 @@ impl PictureOptions {
     pub(crate) fn check(&self, scene: &Scene) -> Result<()> {
         let width = scene.camera.pixeldim[0];
         if let Some(Supersampling { samples, spread }) = self.settings().supersampling()
-            && spread == Spread::Course
+            && spread == SamplePattern::Course
             && u64::from(width) * u64::from(samples) > MOST_COURSE_SAMPLES
         {
             bail!(
@@ -320,7 +320,7 @@ pub(crate) enum JitterName {
     Course,
 }
 
-impl From<JitterName> for Spread {
+impl From<JitterName> for SamplePattern {
     fn from(name: JitterName) -> Self {
         match name {
             JitterName::Hash => Self::Hash,

@@ -6,12 +6,12 @@ use plumb::certify::verdict;
 use plumb::image::{Finished, OutputError};
 use plumb::render::Band;
 
-use super::picture::Picture;
+use super::picture::PictureFile;
 
 /// The picture, and the one of its verdicts, on their way out.
 pub(crate) struct Outputs {
-    pub(crate) picture: Picture,
-    pub(crate) verdicts: Option<Picture>,
+    pub(crate) picture: PictureFile,
+    pub(crate) verdicts: Option<PictureFile>,
 }
 
 impl Outputs {
@@ -33,7 +33,7 @@ impl Outputs {
     /// Whether nothing has reached its place before the end.
     pub(crate) fn can_restart(&self) -> bool {
         let mut all = iter::once(&self.picture).chain(&self.verdicts);
-        all.all(Picture::can_restart)
+        all.all(PictureFile::can_restart)
     }
 
     /// What an error of [`Outputs::write`] means.
@@ -55,7 +55,7 @@ impl Outputs {
 mod tests {
     use std::fs;
 
-    use plumb::certify::Stage;
+    use plumb::certify::DecidedBy;
     use plumb::image::{Format, Metadata, Target};
 
     use super::*;
@@ -63,7 +63,7 @@ mod tests {
     fn open(folder: &std::path::Path) -> Outputs {
         let picture = |name: &str| {
             let target = Target::Path(folder.join(name));
-            Picture::open(&target, Format::Ppm, 1, 2, Metadata::default()).unwrap()
+            PictureFile::open(&target, Format::Ppm, 1, 2, Metadata::default()).unwrap()
         };
         Outputs {
             picture: picture("a.ppm"),
@@ -76,7 +76,7 @@ mod tests {
             rows: row..row + 1,
             rgb: vec![byte; 3],
             values: None,
-            verdicts: Some(vec![Stage::Gpu]),
+            verdicts: Some(vec![DecidedBy::Gpu]),
         }
     }
 
@@ -96,7 +96,7 @@ mod tests {
         let picture = fs::read(folder.path().join("a.ppm")).unwrap();
         assert!(picture.ends_with(&[8, 8, 8, 9, 9, 9]));
         let verdicts = fs::read(folder.path().join("b.ppm")).unwrap();
-        assert!(verdicts.ends_with(&verdict::color(Stage::Gpu)));
+        assert!(verdicts.ends_with(&verdict::color(DecidedBy::Gpu)));
     }
 
     #[cfg(unix)]
@@ -104,7 +104,7 @@ mod tests {
     fn what_is_written_through_cannot_be_begun_anew() {
         let target = Target::Path("/dev/null".into());
         let mut outputs = Outputs {
-            picture: Picture::open(&target, Format::Ppm, 1, 2, Metadata::default()).unwrap(),
+            picture: PictureFile::open(&target, Format::Ppm, 1, 2, Metadata::default()).unwrap(),
             verdicts: None,
         };
         outputs.write(&band(1, 7)).unwrap();

@@ -7,7 +7,7 @@ use plumb::render::Band;
 
 /// The picture on its way out. A file is opened before anything is rendered, so that a name that cannot be written
 /// costs no time; stdout, which cannot fail to open, when there is something to write: an error before leaves it empty.
-pub(crate) struct Picture {
+pub(crate) struct PictureFile {
     target: Target,
     format: Format,
     width: u32,
@@ -16,7 +16,7 @@ pub(crate) struct Picture {
     output: Option<Output>,
 }
 
-impl Picture {
+impl PictureFile {
     /// Opens what is not stdout, for `rows` rows of `width` pixels.
     pub(crate) fn open(
         target: &Target,
@@ -68,7 +68,7 @@ impl Picture {
         self.opened().map_err(io::Error::other)?.write(band)
     }
 
-    /// What an error of [`Picture::write`] means, when it comes back from the rendering.
+    /// What an error of [`PictureFile::write`] means, when it comes back from the rendering.
     pub(crate) fn failed(self, source: io::Error) -> anyhow::Error {
         // One that `opened` gave comes back as it was.
         match source.downcast::<OutputError>() {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use plumb::gpu::adapters;
 use plumb::gpu::single::Single;
-use plumb::probe::{AskGpu, Facts, Options, Probe, Verdict};
+use plumb::probe::{AskGpu, Facts, GpuVerdict, Options, Probe};
 use plumb::render::Settings;
 use plumb::scene::Scene;
 use serde_json::json;
@@ -153,12 +153,12 @@ fn json(name: &str, scene: &Scene, facts: &Facts) -> Result<String> {
         "pixel": facts.pixel,
         "value": decided.value,
         "bytes": decided.bytes,
-        "decided": decided.stage.name(),
-        "f64": facts.rough.map(|v| json!({
+        "decided": decided.by.name(),
+        "f64": facts.enclosure.map(|v| json!({
             "value": v.map(|c| c.value),
             "bound": v.map(|c| c.error),
         })),
-        "gpu": facts.verdict.as_ref().map(Verdict::to_string),
+        "gpu": facts.verdict.as_ref().map(GpuVerdict::to_string),
         "f32": facts.single.map(|Single { value, error }| json!({
             "value": value.map(|c| f64::from(c) / 255.0),
             "bound": error.map(|c| f64::from(c) / 255.0),

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
 use plumb::cpu::debug::list_pixels;
-use plumb::cpu::pixel::Stages;
+use plumb::cpu::pixel::ExactTracer;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, PixelFault, Report, Settings};
@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::args::RenderOptions;
 use super::outputs::Outputs;
-use super::picture::Picture;
+use super::picture::PictureFile;
 use super::progress::Progress;
 use super::summary::{answer, summary, told};
 use super::{Answer, SOFTWARE, say, source};
@@ -43,7 +43,7 @@ pub(crate) struct Args {
 }
 
 /// What is rendered, and under which name.
-struct Job<'a> {
+struct RenderCommand<'a> {
     /// What errors and reports call the scene.
     name: &'a str,
     /// The scene's file, if it has one.
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let name = source::name(&args.scene);
     let scene = source::load(&args.scene)?;
     let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
-    Job::new(&name, file, scene, &args.options).run()
+    RenderCommand::new(&name, file, scene, &args.options).run()
 }
 
 /// Renders the scene on stdin, as the notes' program does: lists the model on stderr, writes the picture to stdout.
@@ -81,16 +81,16 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
     let Some(scene) = source::load_stdin()? else {
         return Ok(Answer::Nothing);
     };
-    let job = Job::new(source::STDIN, None, scene, options);
-    if job.talks() {
+    let command = RenderCommand::new(source::STDIN, None, scene, options);
+    if command.talks() {
         let mut listing = Vec::new();
-        list_model(&job.scene, &mut listing).context("cannot list the model")?;
+        list_model(&command.scene, &mut listing).context("cannot list the model")?;
         say::talk(&String::from_utf8_lossy(&listing));
     }
-    job.run()
+    command.run()
 }
 
-impl<'a> Job<'a> {
+impl<'a> RenderCommand<'a> {
     fn new(
         name: &'a str,
         file: Option<&'a Path>,
@@ -211,7 +211,7 @@ impl<'a> Job<'a> {
         let [width, height] = self.scene.camera.pixeldim;
         let rows = settings.rows_of(height).len() as u32;
         let open = |target: &Target, format| {
-            Picture::open(target, format, width, rows, self.metadata(settings))
+            PictureFile::open(target, format, width, rows, self.metadata(settings))
         };
         Ok(Outputs {
             picture: open(target, format)?,
@@ -301,7 +301,7 @@ impl<'a> Job<'a> {
         let listed = list_pixels(
             &self.scene,
             &prepared,
-            &Stages::new(&self.scene, settings.view()),
+            &ExactTracer::new(&self.scene, settings.view()),
             &limits,
             start..end,
             shown,

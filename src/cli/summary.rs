@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use plumb::certify::Stage;
+use plumb::certify::DecidedBy;
 use plumb::image::Target;
 use plumb::probe::digits::count;
 use plumb::render::{Backend, Precision, Report};
@@ -32,10 +32,10 @@ pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> Strin
 
 /// What decided the pixels, in short.
 fn decided(report: &Report) -> String {
-    let stages = Stage::ALL[1..]
+    let counts = DecidedBy::ALL[1..]
         .iter()
-        .filter(|stage| report.decided.count(**stage) > 0)
-        .map(|stage| format!("{} {}", stage.name(), report.decided.count(*stage)))
+        .filter(|by| report.decided.count(**by) > 0)
+        .map(|by| format!("{} {}", by.name(), report.decided.count(*by)))
         .collect::<Vec<_>>()
         .join(", ");
     match (report.precision, report.backend, report.refined) {
@@ -52,9 +52,9 @@ fn decided(report: &Report) -> String {
             } else {
                 String::new()
             };
-            format!("certified, {percent:.2} % doubtful{samples}: {stages}")
+            format!("certified, {percent:.2} % doubtful{samples}: {counts}")
         }
-        _ => format!("certified: {stages}"),
+        _ => format!("certified: {counts}"),
     }
 }
 
@@ -95,7 +95,7 @@ pub(crate) fn answer(strict: bool, report: &Report) -> Answer {
 mod tests {
     use std::path::Path;
 
-    use plumb::render::{Settings, Spread, render};
+    use plumb::render::{SamplePattern, Settings, render};
     use plumb::scene::load_from;
 
     use super::*;
@@ -152,7 +152,7 @@ mod tests {
             "{text}"
         );
         report.samples = 16;
-        report.jitter = Some(Spread::Hash);
+        report.jitter = Some(SamplePattern::Hash);
         report.refined_samples_percent = 0.021;
         let text = line(&report);
         assert!(

@@ -5,7 +5,7 @@ use crate::real::{Bounded, Real, Undecided, V3};
 
 /// The greatest f64 that a number may be: how far hits matter.
 pub fn at_most<R: Real>(number: R) -> f64 {
-    let Bounded { value, error } = number.near();
+    let Bounded { value, error } = number.enclosure();
     let most = (value + error) * SLACK;
     if most.is_nan() { f64::INFINITY } else { most }
 }
@@ -24,8 +24,8 @@ pub fn bvh_hits<R: Real>(
     mut reach: f64,
     mut test: impl FnMut(usize) -> Result<f64, Undecided>,
 ) -> Result<(), Undecided> {
-    let base = [base.x, base.y, base.z].map(Real::near);
-    let dir = [dir.x, dir.y, dir.z].map(Real::near);
+    let base = [base.x, base.y, base.z].map(Real::enclosure);
+    let dir = [dir.x, dir.y, dir.z].map(Real::enclosure);
     let farthest = bvh.size() + base.iter().map(|c| c.value.abs()).sum::<f64>();
     let longest = dir
         .iter()

@@ -15,8 +15,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::hit_point::hit_point;
-use super::pixel::Stages;
-use super::trace::{Fault, Limits, Unwatched, ray_trace};
+use super::pixel::ExactTracer;
+use super::trace::{Fault, Limits, Unobserved, ray_trace};
 use crate::frame::PixelFault;
 use crate::jitter::Sampling;
 use crate::prepare::Prepared;
@@ -46,7 +46,7 @@ pub struct Shown {
 pub fn list_pixels(
     scene: &Scene,
     prepared: &Prepared<f64>,
-    stages: &Stages<'_>,
+    exact_tracer: &ExactTracer<'_>,
     limits: &Limits,
     rows: Range<u32>,
     shown: Shown,
@@ -65,8 +65,14 @@ pub fn list_pixels(
                     max_rays: limits.max_rays,
                 }),
             };
-            let traced = ray_trace(prepared, limits, f64::from(x), f64::from(y), &mut Unwatched)
-                .map_err(fault)?;
+            let traced = ray_trace(
+                prepared,
+                limits,
+                f64::from(x),
+                f64::from(y),
+                &mut Unobserved,
+            )
+            .map_err(fault)?;
             if shown.pix {
                 write!(to, "\nPIX {x:4} {y:4} - ")?;
             }
@@ -77,10 +83,10 @@ pub fn list_pixels(
                 write!(to, "{name:<12} HIT:{}", triple(point, 1))?;
             }
             if shown.drgb {
-                write!(to, "{name:<12} DRGB:{}", triple(traced.color.approx(), 2))?;
+                write!(to, "{name:<12} DRGB:{}", triple(traced.color.to_f64(), 2))?;
             }
             if shown.irgb {
-                let decided = stages
+                let decided = exact_tracer
                     .trace(limits, Sampling::Once, x, y)
                     .map_err(io::Error::other)?;
                 let [r, g, b] = decided.bytes;

@@ -22,7 +22,7 @@ pub fn hit_point<R: Real>(
     hit: &Hit<R>,
 ) -> DVec3 {
     let unit = two_to(prepared.camera.scale);
-    let along = || scene.camera.viewpoint + ray.w.approx() * (unit / hit.inverse.approx());
+    let along = || scene.camera.viewpoint + ray.w.to_f64() * (unit / hit.inverse.to_f64());
     match scene.objects[hit.object].shape {
         Shape::Plane { normal, point, .. } => {
             let mut at = along();
@@ -38,7 +38,7 @@ pub fn hit_point<R: Real>(
             let sphere = sphere.or_else(|| prepared.make_sphere(hit.index));
             sphere.map_or_else(along, |sphere| {
                 let camera = &prepared.camera;
-                center + sphere_from_center(camera, &sphere, ray, hit.inverse).approx() * unit
+                center + sphere_from_center(camera, &sphere, ray, hit.inverse).to_f64() * unit
             })
         }
     }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::bvh::at_most;
 use super::surface::{Point, getdiff, tile_material};
-use super::world::{Met, Range, Toward, hits_from};
+use super::world::{Range, SecondaryHit, Toward, hits_from};
 use crate::prepare::{Light, Prepared, World};
 use crate::real::rational::two_to;
 use crate::real::{Real, Undecided, V3};
@@ -26,8 +26,8 @@ pub enum Lit<R> {
         diffuse: V3<R>,
         /// The glint term.
         glint: V3<R>,
-        /// The share of the light that came through what it had to pass.
-        filter: V3<R>,
+        /// The transmittance of what the light had to pass.
+        transmittance: V3<R>,
     },
 }
 
@@ -57,30 +57,33 @@ pub fn light_term<R: Real>(
     }
     let distance = distance2.sqrt();
     let d = toward * (R::exact(1.0) / distance);
-    let level = scene.is_plane[point.object]
+    let light_in_plane = scene.is_plane[point.object]
         && world.planes[world.places[point.object]]
-            .level
+            .lights_on_surface
             .binary_search(&number)
             .is_ok();
     let across = toward.dot(normal);
-    if level || !across.positive()? {
+    if light_in_plane || !across.positive()? {
         return Ok(Lit::FacesAway);
     }
     if !in_cone(light, d)? {
         return Ok(Lit::OutsideCone);
     }
-    let filter = match shadow(scene, world, point, d, Toward { number, distance })? {
-        Ok(filter) => filter,
+    let transmittance = match shadow(scene, world, point, d, Toward { number, distance })? {
+        Ok(transmittance) => transmittance,
         Err(blocker) => return Ok(Lit::Shadowed(blocker)),
     };
     // c/dist, with c the cosine.
     let falloff = (across / distance2).times(two_to(-scene.camera.scale));
-    let diffuse = getdiff(scene, point)?.each(light.emissivity).each(filter) * falloff;
+    let diffuse = getdiff(scene, point)?
+        .each(light.emissivity)
+        .each(transmittance)
+        * falloff;
     let glint = glint(scene, light, point, normal, base, d)?;
     Ok(Lit::Lit {
         diffuse,
         glint,
-        filter,
+        transmittance,
     })
 }
 
@@ -92,7 +95,7 @@ fn in_cone<R: Real>(light: &Light<R>, d: V3<R>) -> Result<bool, Undecided> {
     }
 }
 
-/// The share of the light that reaches the point along `d`, or the object that keeps it off.
+/// The transmittance from the point to the light along `d`, or the object that keeps it off.
 fn shadow<R: Real>(
     scene: &Prepared<R>,
     world: &World<R>,
@@ -108,22 +111,22 @@ fn shadow<R: Real>(
         Some(light) if world.bvh.is_some() => at_most(light.distance),
         _ => f64::INFINITY,
     };
-    let opaque = |object: usize| !scene.palette[scene.materials[object]].clear;
-    let mut met = Vec::new();
+    let opaque = |object: usize| !scene.palette[scene.materials[object]].transparent;
+    let mut hits = Vec::new();
     let mut dark = None;
     hits_from(world, point.position, d, &range, &mut |hit| {
-        if !scene.any_clear {
+        if !scene.any_transparent {
             dark = Some(hit.point.object);
             return Ok(-1.0);
         }
-        met.push(hit);
+        hits.push(hit);
         Ok(reach)
     })?;
     if let Some(blocker) = dark {
         return Ok(Err(blocker));
     }
-    let met = one_at_a_place(world, met)?;
-    if let Some(blocker) = met
+    let hits = one_at_a_place(world, hits)?;
+    if let Some(blocker) = hits
         .iter()
         .map(|point| point.object)
         .find(|&object| opaque(object))
@@ -131,27 +134,27 @@ fn shadow<R: Real>(
         return Ok(Err(blocker));
     }
     let one = R::exact(1.0);
-    let mut filter = V3::new(one, one, one);
-    for point in &met {
+    let mut transmittance = V3::new(one, one, one);
+    for point in &hits {
         let material = &scene.palette[scene.materials[point.object]];
-        filter =
-            filter.each(scene.palette[tile_material(scene, point)?].tint) * material.transparency;
+        transmittance = transmittance.each(scene.palette[tile_material(scene, point)?].tint)
+            * material.transparency;
     }
-    Ok(Ok(filter))
+    Ok(Ok(transmittance))
 }
 
 /// Of surfaces met at the same place only the first in the file: seen from there the others are at t = 0, a miss.
 fn one_at_a_place<R: Real>(
     world: &World<R>,
-    mut met: Vec<Met<R>>,
+    mut hits: Vec<SecondaryHit<R>>,
 ) -> Result<Vec<Point<R>>, Undecided> {
     // Of coincident surfaces that is decided already.
-    met.sort_unstable_by_key(|met| (world.groups[met.point.object], met.point.object));
-    met.dedup_by_key(|met| world.groups[met.point.object]);
+    hits.sort_unstable_by_key(|hit| (world.groups[hit.point.object], hit.point.object));
+    hits.dedup_by_key(|hit| world.groups[hit.point.object]);
     // Nearly in order, so that putting them in order exactly takes one comparison each.
-    met.sort_by(|a, b| a.t.approx().total_cmp(&b.t.approx()));
-    let mut kept: Vec<Met<R>> = Vec::with_capacity(met.len());
-    for next in met {
+    hits.sort_by(|a, b| a.t.to_f64().total_cmp(&b.t.to_f64()));
+    let mut kept: Vec<SecondaryHit<R>> = Vec::with_capacity(hits.len());
+    for next in hits {
         let mut place = kept.len();
         loop {
             let order = match place.checked_sub(1) {
@@ -174,7 +177,7 @@ fn one_at_a_place<R: Real>(
             }
         }
     }
-    Ok(kept.into_iter().map(|met| met.point).collect())
+    Ok(kept.into_iter().map(|hit| hit.point).collect())
 }
 
 /// The glint: specular ∘ E · (h·N)ⁿ, h the unit vector halfway between the ways back and to the light.

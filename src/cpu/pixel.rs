@@ -1,6 +1,6 @@
 //! A pixel from its samples: the notes' `make_pixel`, in the number types that it takes to be sure of it.
 //!
-//! [`Stages`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that are
+//! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that are
 //! exact in the end.
 
 use std::cell::RefCell;
@@ -12,11 +12,11 @@ use glam::DVec3;
 
 use super::camera::{camera_getdir, camera_setpix, inverse_distance};
 use super::hit_point::hit_point;
-use super::trace::{Fault, Limits, Unwatched, find_closest_object, ray_trace};
-use crate::frame::{Decided, Part, PixelFault, Stage};
+use super::trace::{Fault, Limits, Unobserved, find_closest_object, ray_trace};
+use crate::frame::{Decided, DecidedBy, Part, PixelFault};
 use crate::jitter::{self, Sampling};
-use crate::prepare::later::Laters;
-use crate::prepare::{Prepared, View};
+use crate::prepare::on_demand::OnDemandSources;
+use crate::prepare::{Prepared, ViewParameters};
 use crate::real::{Bounded, Effort, Lazy, Mark, Real, Undecided, V3};
 use crate::scene::Scene;
 
@@ -67,7 +67,7 @@ pub fn make_pixel<R: Real>(
 
 /// The colour of a sample.
 fn color<R: Real>(scene: &Prepared<R>, limits: &Limits, x: f64, y: f64) -> Result<V3<R>, Fault> {
-    ray_trace(scene, limits, x, y, &mut Unwatched).map(|traced| traced.color)
+    ray_trace(scene, limits, x, y, &mut Unobserved).map(|traced| traced.color)
 }
 
 /// What the ray through a place on the screen hits first.
@@ -91,7 +91,7 @@ fn first_hit<R: Real>(
     let hit = find_closest_object(prepared, &ray)?;
     Ok(hit.map(|hit| {
         let t = R::exact(1.0) / inverse_distance(&prepared.camera, &ray, hit.inverse);
-        let Bounded { value, error } = t.near();
+        let Bounded { value, error } = t.enclosure();
         // The bound is kept low by its own roundings until it is used.
         let error = error * Bounded::GROW;
         FirstHit {
@@ -108,20 +108,20 @@ const FLUSHED: f64 = 1.0 / (1_u128 << 100) as f64;
 /// The scene on the CPU: f64 with error bounds decides nearly every pixel, and exact numbers decide the others. Only a pixel
 /// that is too much for these is presumed.
 #[derive(Debug)]
-pub struct Stages<'a> {
+pub struct ExactTracer<'a> {
     scene: &'a Scene,
-    view: View,
+    view: ViewParameters,
     values: bool,
     /// Tells the scenes of a thread's exact numbers apart.
     number: u64,
     bounded: Prepared<Bounded>,
-    laters: OnceLock<Laters>,
+    sources: OnceLock<OnDemandSources>,
     plain: OnceLock<Prepared<f64>>,
 }
 
 /// A scene in exact numbers: they are a thread's own.
-struct Own {
-    /// Which [`Stages`] it is of.
+struct ThreadScene {
+    /// Which [`ExactTracer`] it is of.
     number: u64,
     prepared: Rc<Prepared<Lazy>>,
     /// Where its numbers end.
@@ -129,21 +129,21 @@ struct Own {
 }
 
 thread_local! {
-    static OWN: RefCell<Option<Own>> = const { RefCell::new(None) };
+    static THREAD_SCENE: RefCell<Option<ThreadScene>> = const { RefCell::new(None) };
 }
 
 static NUMBERS: AtomicU64 = AtomicU64::new(0);
 
-impl<'a> Stages<'a> {
+impl<'a> ExactTracer<'a> {
     /// Prepares the scene.
-    pub fn new(scene: &'a Scene, view: View) -> Self {
+    pub fn new(scene: &'a Scene, view: ViewParameters) -> Self {
         Self {
             scene,
             view,
             values: false,
             number: NUMBERS.fetch_add(1, Ordering::Relaxed),
             bounded: Prepared::new(scene, view),
-            laters: OnceLock::new(),
+            sources: OnceLock::new(),
             plain: OnceLock::new(),
         }
     }
@@ -160,7 +160,7 @@ impl<'a> Stages<'a> {
     }
 
     /// The value of pixel (x, y) in f64 with error bounds, if they suffice to tell what its rays meet.
-    pub fn rough(
+    pub fn pixel_enclosure(
         &self,
         limits: &Limits,
         sampling: Sampling<'_>,
@@ -190,7 +190,7 @@ impl<'a> Stages<'a> {
             max_rays: limits.max_rays,
         };
         let quick = make_pixel(&self.bounded, limits, sampling, x, y)
-            .and_then(|v| Ok(self.decided(v, Stage::Bounded)?));
+            .and_then(|v| Ok(self.decided(v, DecidedBy::Bounded)?));
         match quick {
             Ok(decided) => return Ok(decided),
             Err(Fault::TooManyRays) => return Err(fault),
@@ -199,7 +199,7 @@ impl<'a> Stages<'a> {
         if !matches!(sampling, Sampling::Once) {
             // The samples that need it alone, and their mean in f64.
             let v = self.mean_bounded(limits, sampling, x, y, |_| true);
-            match v.and_then(|(v, stage)| Ok(self.decided(v, stage)?)) {
+            match v.and_then(|(v, by)| Ok(self.decided(v, by)?)) {
                 Ok(decided) => return Ok(decided),
                 Err(Fault::TooManyRays) => return Err(fault),
                 Err(Fault::Undecided) => {}
@@ -207,21 +207,21 @@ impl<'a> Stages<'a> {
         }
         let exact = self.exactly(|scene| {
             let v = make_pixel(scene, limits, sampling, x, y)?;
-            Ok(self.decided(v, Stage::Bounded)?)
+            Ok(self.decided(v, DecidedBy::Bounded)?)
         });
         match exact {
-            (Ok(decided), stage) => Ok(Decided { stage, ..decided }),
+            (Ok(decided), by) => Ok(Decided { by, ..decided }),
             (Err(Fault::TooManyRays), _) => Err(fault),
             (Err(Fault::Undecided), _) => {
                 let v = make_pixel(self.plain(), limits, sampling, x, y);
-                match v.and_then(|v| Ok(self.decided(v, Stage::Presumed)?)) {
+                match v.and_then(|v| Ok(self.decided(v, DecidedBy::Presumed)?)) {
                     Ok(decided) => Ok(decided),
                     Err(Fault::TooManyRays) => Err(fault),
                     // Not a number even so.
                     Err(Fault::Undecided) => Ok(Decided {
                         value: [0.0; 3],
                         bytes: [0; 3],
-                        stage: Stage::Presumed,
+                        by: DecidedBy::Presumed,
                     }),
                 }
             }
@@ -243,7 +243,7 @@ impl<'a> Stages<'a> {
             let (value, error) = (f64::from(part.sum[i]), f64::from(part.error[i]) + FLUSHED);
             Bounded { value, error } / full
         });
-        match rest.and_then(|(rest, stage)| Ok(self.decided(V3::new(r, g, b) + rest, stage)?)) {
+        match rest.and_then(|(rest, by)| Ok(self.decided(V3::new(r, g, b) + rest, by)?)) {
             Ok(decided) => Ok(Some(decided)),
             Err(Fault::Undecided) => Ok(None),
             Err(Fault::TooManyRays) => Err(PixelFault {
@@ -263,14 +263,14 @@ impl<'a> Stages<'a> {
         x: u32,
         y: u32,
         wanted: impl Fn(u32) -> bool,
-    ) -> Result<(V3<Bounded>, Stage), Fault> {
-        let mut stage = Stage::Bounded;
+    ) -> Result<(V3<Bounded>, DecidedBy), Fault> {
+        let mut by = DecidedBy::Bounded;
         let v = mean(sampling, x, y, wanted, |x, y| {
             let (v, hardest) = self.sample_bounded(limits, x, y)?;
-            stage = stage.max(hardest);
+            by = by.max(hardest);
             Ok(v)
         })?;
-        Ok((v, stage))
+        Ok((v, by))
     }
 
     /// The colour of a sample.
@@ -279,10 +279,10 @@ impl<'a> Stages<'a> {
         limits: &Limits,
         x: f64,
         y: f64,
-    ) -> Result<(V3<Bounded>, Stage), Fault> {
+    ) -> Result<(V3<Bounded>, DecidedBy), Fault> {
         match color(&self.bounded, limits, x, y) {
             Err(Fault::Undecided) => {}
-            decided => return Ok((decided?, Stage::Bounded)),
+            decided => return Ok((decided?, DecidedBy::Bounded)),
         }
         let exact = self.exactly(|scene| {
             let v = color(scene, limits, x, y)?;
@@ -294,10 +294,10 @@ impl<'a> Stages<'a> {
                     Err(Fault::Undecided) => V3::new(0.0, 0.0, 0.0),
                     v => v?,
                 };
-                let v = V3::new(v.x.near(), v.y.near(), v.z.near());
-                Ok((v, Stage::Presumed))
+                let v = V3::new(v.x.enclosure(), v.y.enclosure(), v.z.enclosure());
+                Ok((v, DecidedBy::Presumed))
             }
-            (v, stage) => Ok((v?, stage)),
+            (v, by) => Ok((v?, by)),
         }
     }
 
@@ -305,17 +305,19 @@ impl<'a> Stages<'a> {
     fn exactly<T>(
         &self,
         work: impl FnOnce(&Prepared<Lazy>) -> Result<T, Fault>,
-    ) -> (Result<T, Fault>, Stage) {
-        let own = OWN.with_borrow(|own| {
-            let own = own.as_ref().filter(|own| own.number == self.number)?;
-            Some((Rc::clone(&own.prepared), own.end))
+    ) -> (Result<T, Fault>, DecidedBy) {
+        let found = THREAD_SCENE.with_borrow(|found| {
+            let found = found.as_ref().filter(|found| found.number == self.number)?;
+            Some((Rc::clone(&found.prepared), found.end))
         });
-        let (prepared, end) = own.unwrap_or_else(|| {
-            let laters = self.laters.get_or_init(|| self.bounded.laters(self.scene));
+        let (prepared, end) = found.unwrap_or_else(|| {
+            let sources = self
+                .sources
+                .get_or_init(|| self.bounded.sources(self.scene));
             Lazy::clear();
-            let prepared = Prepared::again(self.scene, self.view, &self.bounded, laters);
+            let prepared = Prepared::again(self.scene, self.view, &self.bounded, sources);
             let (prepared, end) = (Rc::new(prepared), Lazy::mark());
-            OWN.set(Some(Own {
+            THREAD_SCENE.set(Some(ThreadScene {
                 number: self.number,
                 prepared: Rc::clone(&prepared),
                 end,
@@ -324,13 +326,13 @@ impl<'a> Stages<'a> {
         });
         Lazy::effort();
         let result = work(&prepared);
-        let stage = match Lazy::effort() {
-            Effort::Bounds | Effort::Precision => Stage::Multiprecision,
-            Effort::Proven => Stage::Exact,
-            Effort::Presumed => Stage::Presumed,
+        let by = match Lazy::effort() {
+            Effort::Bounds | Effort::Precision => DecidedBy::Multiprecision,
+            Effort::Proven => DecidedBy::Exact,
+            Effort::Presumed => DecidedBy::Presumed,
         };
         Lazy::release(end);
-        (result, stage)
+        (result, by)
     }
 
     /// What the ray through (x, y) hits first, counted from the bottom left, with fractions between pixels, in the cheapest
@@ -360,17 +362,13 @@ impl<'a> Stages<'a> {
     }
 
     /// A pixel from its value.
-    fn decided<R: Real>(&self, v: V3<R>, stage: Stage) -> Result<Decided, Undecided> {
+    fn decided<R: Real>(&self, v: V3<R>, by: DecidedBy) -> Result<Decided, Undecided> {
         let bytes = camera_setpix(v)?;
         let value = if self.values {
             [v.x.nearest_f32()?, v.y.nearest_f32()?, v.z.nearest_f32()?]
         } else {
-            v.approx().to_array().map(|c| c as f32)
+            v.to_f64().to_array().map(|c| c as f32)
         };
-        Ok(Decided {
-            value,
-            bytes,
-            stage,
-        })
+        Ok(Decided { value, bytes, by })
     }
 }

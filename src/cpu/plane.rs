@@ -77,6 +77,8 @@ pub fn plane_hits_from<R: Real>(
 /// A hit point with the coordinate that all points of the plane share, if there is one, set to exactly that.
 pub fn on_plane<R: Real>(plane: &WorldPlane<R>, position: V3<R>) -> V3<R> {
     plane
-        .own
-        .map_or(position, |(axis, own)| position.with_axis(axis, own))
+        .fixed_coordinate
+        .map_or(position, |(axis, coordinate)| {
+            position.with_axis(axis, coordinate)
+        })
 }

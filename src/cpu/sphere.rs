@@ -35,9 +35,10 @@ fn sphere_disc<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, al
 /// W − W_c on the screen: how far the ray passes from the projected center, if that is on the screen's side.
 #[inline]
 fn sphere_offset<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Option<[R; 2]> {
-    let seen = sphere.seen.as_ref()?;
-    let axis =
-        |i: usize| camera.step[i].times(ray.pixel[i] - f64::from(seen.anchor[i])) + seen.offset[i];
+    let projected = sphere.projected.as_ref()?;
+    let axis = |i: usize| {
+        camera.step[i].times(ray.pixel[i] - f64::from(projected.anchor[i])) + projected.offset[i]
+    };
     Some([axis(0), axis(1)])
 }
 

@@ -6,12 +6,12 @@ use super::light::{Lit, light_term, normal_at};
 use super::plane::{on_plane, plane_hits};
 use super::sphere::{sphere_from_center, sphere_hits};
 use super::surface::{Point, getamb};
-use super::world::{Range, closest_from};
+use super::world::{Range, closest_hit};
 use crate::prepare::{Prepared, Surface, World};
 use crate::real::rational::two_to;
 use crate::real::{Bounded, Real, Undecided, V3};
 
-pub use super::watch::{Branch, RayKind, Unmet, Unwatched, Watch};
+pub use super::observer::{Branch, RayKind, TraceObserver, Unmet, Unobserved};
 pub use crate::settings::Limits;
 
 /// A hit of a primary ray.
@@ -81,18 +81,18 @@ pub fn find_closest_object<R: Real>(
         }
         Ok(())
     };
-    let Some(tiles) = &scene.tiles else {
+    let Some(screen_grid) = &scene.screen_grid else {
         for index in 0..scene.sphere_count() {
             sphere(&mut closest, index)?;
         }
         return Ok(closest);
     };
-    for &index in tiles.at(ray.pixel) {
+    for &index in screen_grid.at(ray.pixel) {
         let index = index as usize;
         // The nearest come first: the others lie behind what is hit.
         if closest
             .as_ref()
-            .is_some_and(|hit| f64::from(tiles.most[index]) < at_least(hit.inverse))
+            .is_some_and(|hit| f64::from(screen_grid.max_inverse[index]) < at_least(hit.inverse))
         {
             break;
         }
@@ -103,7 +103,7 @@ pub fn find_closest_object<R: Real>(
 
 /// The least f64 that a number may be.
 fn at_least<R: Real>(number: R) -> f64 {
-    let Bounded { value, error } = number.near();
+    let Bounded { value, error } = number.enclosure();
     value - (error + value.abs() * f64::EPSILON) * Bounded::GROW
 }
 
@@ -179,7 +179,7 @@ pub fn ray_trace<R: Real>(
     limits: &Limits,
     x: f64,
     y: f64,
-    watch: &mut impl Watch<R>,
+    observer: &mut impl TraceObserver<R>,
 ) -> Result<Traced<R>, Fault> {
     let ray = camera_getdir(&scene.camera, x, y);
     let zero = V3::new(R::zero(), R::zero(), R::zero());
@@ -217,8 +217,8 @@ pub fn ray_trace<R: Real>(
                 rays: 1,
                 color: zero,
             };
-            tree.shade(0, &first, length / hit.inverse, &point, watch)?;
-            tree.grow(limits, watch)?;
+            tree.shade(0, &first, length / hit.inverse, &point, observer)?;
+            tree.grow(limits, observer)?;
             tree.color
         }
     };
@@ -241,18 +241,18 @@ struct Tree<'a, R> {
 
 impl<R: Real> Tree<'_, R> {
     /// Follows the waiting rays, and those that they leave, to their ends.
-    fn grow(&mut self, limits: &Limits, watch: &mut impl Watch<R>) -> Result<(), Fault> {
+    fn grow(&mut self, limits: &Limits, observer: &mut impl TraceObserver<R>) -> Result<(), Fault> {
         let longest = R::exact(limits.max_path) * R::exact(two_to(-self.scene.camera.scale));
         while let Some(ray) = self.waiting.pop() {
             if self.saturated(limits.enough) {
-                watch.full(self.waiting.len() + 1);
+                observer.full(self.waiting.len() + 1);
                 return Ok(());
             }
             let number = self.rays;
             let mark = R::mark();
             if (ray.total - longest).positive()? {
                 R::release(mark);
-                watch.missed(number, &ray, Unmet::TooLong);
+                observer.missed(number, &ray, Unmet::TooLong);
                 continue;
             }
             if self.rays == limits.max_rays {
@@ -263,11 +263,11 @@ impl<R: Real> Tree<'_, R> {
                 skip: ray.last,
                 light: None,
             };
-            match closest_from(self.world, ray.base, ray.dir, &range)? {
-                Some(met) => self.shade(number, &ray, met.t, &met.point, watch)?,
+            match closest_hit(self.world, ray.base, ray.dir, &range)? {
+                Some(hit) => self.shade(number, &ray, hit.t, &hit.point, observer)?,
                 None => {
                     R::release(mark);
-                    watch.missed(number, &ray, Unmet::Nothing);
+                    observer.missed(number, &ray, Unmet::Nothing);
                 }
             }
         }
@@ -279,7 +279,7 @@ impl<R: Real> Tree<'_, R> {
         let color = self.color;
         enough.is_finite()
             && [color.x, color.y, color.z].into_iter().all(|c| {
-                let Bounded { value, error } = c.rough();
+                let Bounded { value, error } = c.quick_enclosure();
                 value - error * Bounded::GROW >= enough * (1.0 + f64::EPSILON)
             })
     }
@@ -291,16 +291,16 @@ impl<R: Real> Tree<'_, R> {
         ray: &Branch<R>,
         t: R,
         point: &Point<R>,
-        watch: &mut impl Watch<R>,
+        observer: &mut impl TraceObserver<R>,
     ) -> Result<(), Fault> {
         let (scene, world) = (self.scene, self.world);
         let normal = normal_at(world, scene.is_plane[point.object], point);
         let mut color = getamb(scene, point)?;
-        watch.met(number, ray, t, point, color);
+        observer.met(number, ray, t, point, color);
         for light in 0..world.lights.len() {
             let mark = R::mark();
             let lit = light_term(scene, world, light, point, normal, ray.base)?;
-            watch.light(light, &lit);
+            observer.light(light, &lit);
             if let Lit::Lit { diffuse, glint, .. } = lit {
                 color = color + diffuse + glint;
             } else {
@@ -310,14 +310,14 @@ impl<R: Real> Tree<'_, R> {
         let total = ray.total + t;
         let material = &scene.palette[scene.materials[point.object]];
         let one = R::exact(1.0);
-        let kept = if material.clear {
+        let kept = if material.transparent {
             one - material.transparency
         } else {
             one
         };
         let share = (kept / total).times(two_to(-scene.camera.scale));
         let share = ray.weight.each(color) * share;
-        watch.adds(share);
+        observer.adds(share);
         self.color = self.color + share;
         let last = Some(world.groups[point.object]);
         let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>, channels: [bool; 3]| {
@@ -334,7 +334,7 @@ impl<R: Real> Tree<'_, R> {
             };
             // A ray that counts for nothing need not be traced.
             if counts == [false; 3] {
-                watch.missed(number, &branch, Unmet::Weightless);
+                observer.missed(number, &branch, Unmet::Weightless);
             } else {
                 self.waiting.push(branch);
             }
@@ -356,7 +356,7 @@ impl<R: Real> Tree<'_, R> {
                 material.mirrored,
             );
         }
-        if material.clear {
+        if material.transparent {
             let tint = &scene.palette[super::surface::tile_material(scene, point)?];
             leave(
                 RayKind::Through,

@@ -9,7 +9,7 @@ use crate::real::{Real, Undecided, V3};
 
 /// A hit of a ray from anywhere.
 #[derive(Debug, Clone, Copy)]
-pub struct Met<R> {
+pub struct SecondaryHit<R> {
     /// Distance, in units of 2^scale.
     pub t: R,
     /// Where and on what.
@@ -36,29 +36,29 @@ pub struct Toward<R> {
 
 /// The first object that the ray from `base` along the unit vector `dir` meets; of equally near ones the first in the
 /// file.
-pub fn closest_from<R: Real>(
+pub fn closest_hit<R: Real>(
     world: &World<R>,
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
-) -> Result<Option<Met<R>>, Undecided> {
-    let mut closest: Option<Met<R>> = None;
+) -> Result<Option<SecondaryHit<R>>, Undecided> {
+    let mut closest: Option<SecondaryHit<R>> = None;
     let tree = world.bvh.is_some();
-    hits_from(world, base, dir, range, &mut |met| {
+    hits_from(world, base, dir, range, &mut |hit| {
         let takes = match &closest {
             None => true,
             // Surfaces that coincide are met at the same place.
-            Some(best) if world.groups[best.point.object] == world.groups[met.point.object] => {
-                met.point.object < best.point.object
+            Some(best) if world.groups[best.point.object] == world.groups[hit.point.object] => {
+                hit.point.object < best.point.object
             }
             Some(best) => {
-                let difference = best.t - met.t;
+                let difference = best.t - hit.t;
                 difference.positive()?
-                    || (met.point.object < best.point.object && difference.non_negative()?)
+                    || (hit.point.object < best.point.object && difference.non_negative()?)
             }
         };
         if takes {
-            closest = Some(met);
+            closest = Some(hit);
         }
         Ok(match &closest {
             Some(best) if tree => at_most(best.t),
@@ -75,7 +75,7 @@ pub fn hits_from<R: Real>(
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
-    take: &mut impl FnMut(Met<R>) -> Result<f64, Undecided>,
+    take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<(), Undecided> {
     let mut reach = planes_from(world, base, dir, range, take)?;
     if reach < 0.0 {
@@ -85,9 +85,9 @@ pub fn hits_from<R: Real>(
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
         let mark = R::mark();
         if reach >= 0.0
-            && let Some(met) = sphere_from(world, index, base, dir, range)?
+            && let Some(hit) = sphere_from(world, index, base, dir, range)?
         {
-            reach = take(met)?;
+            reach = take(hit)?;
         } else {
             R::release(mark);
         }
@@ -110,7 +110,7 @@ fn planes_from<R: Real>(
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
-    take: &mut impl FnMut(Met<R>) -> Result<f64, Undecided>,
+    take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<f64, Undecided> {
     let mut reach = match &range.light {
         Some(light) if world.bvh.is_some() => at_most(light.distance),
@@ -118,14 +118,15 @@ fn planes_from<R: Real>(
     };
     for plane in &world.planes {
         let mark = R::mark();
-        if range.skip == Some(world.groups[plane.object]) || range.ends_on(&plane.level) {
+        if range.skip == Some(world.groups[plane.object]) || range.ends_on(&plane.lights_on_surface)
+        {
             continue;
         }
         if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)?
             && range.reaches(t)?
         {
             let zero = V3::new(R::zero(), R::zero(), R::zero());
-            reach = take(Met {
+            reach = take(SecondaryHit {
                 t,
                 point: Point {
                     object: plane.object,
@@ -150,7 +151,7 @@ fn sphere_from<R: Real>(
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
-) -> Result<Option<Met<R>>, Undecided> {
+) -> Result<Option<SecondaryHit<R>>, Undecided> {
     let made;
     let sphere = match world.spheres.get(index) {
         Some(sphere) => sphere,
@@ -166,7 +167,7 @@ fn sphere_from<R: Real>(
         return Ok(None);
     }
     if let Some(light) = &range.light
-        && range.ends_on(&sphere.level)
+        && range.ends_on(&sphere.lights_on_surface)
     {
         // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
         let to_light = world.lights[light.number].location - sphere.center;
@@ -181,7 +182,7 @@ fn sphere_from<R: Real>(
         return Ok(None);
     }
     let position = base + dir * t;
-    Ok(Some(Met {
+    Ok(Some(SecondaryHit {
         t,
         point: Point {
             object: sphere.object,
@@ -201,9 +202,9 @@ impl<R: Real> Range<R> {
 
     /// Whether a shadow ray's light is among these, which lie on a surface. On a plane, they meet at the light, not
     /// before it, or not at all.
-    fn ends_on(&self, level: &[usize]) -> bool {
+    fn ends_on(&self, lights_on_surface: &[usize]) -> bool {
         self.light
             .as_ref()
-            .is_some_and(|light| level.binary_search(&light.number).is_ok())
+            .is_some_and(|light| lights_on_surface.binary_search(&light.number).is_ok())
     }
 }

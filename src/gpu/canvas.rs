@@ -5,7 +5,7 @@ use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::device::Gpu;
-use crate::frame::{Band, Stage};
+use crate::frame::{Band, DecidedBy};
 
 const SCATTER: &str = include_str!("canvas.wgsl");
 /// Invocations of a workgroup, as the shader has it.
@@ -14,7 +14,7 @@ const GROUP: u32 = 64;
 const ACROSS: u32 = 1024;
 
 /// A picture on the GPU: a word a pixel, rows from the top. Its bytes from the lowest up are red, green, blue, and the
-/// [`Stage`] that decided it, by number; 255 where the CPU has yet to decide.
+/// [`DecidedBy`] that decided it, by number; 255 where the CPU has yet to decide.
 #[derive(Debug)]
 pub struct Canvas {
     /// The words; a storage buffer.
@@ -101,15 +101,15 @@ impl Scatter {
         let first = u64::from(height - band.rows.end) * u64::from(width);
         let verdict = |i: usize| match &band.verdicts {
             Some(verdicts) => verdicts[i],
-            None => Stage::Single,
+            None => DecidedBy::Single,
         };
         let records = band.rgb.as_chunks::<3>().0.iter().enumerate();
         let words: Vec<[u32; 2]> = records
             .map(|(i, bytes)| (i, bytes, verdict(i)))
-            .filter(|(.., stage)| *stage != Stage::Gpu)
-            .map(|(i, [r, g, b], stage)| {
+            .filter(|(.., by)| *by != DecidedBy::Gpu)
+            .map(|(i, [r, g, b], by)| {
                 let place = (first + i as u64) as u32;
-                [place, u32::from_le_bytes([*r, *g, *b, stage as u8])]
+                [place, u32::from_le_bytes([*r, *g, *b, by as u8])]
             })
             .collect();
         // A list may be as long as a buffer, half as many records as there are pixels.

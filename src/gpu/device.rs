@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
-use super::turn::Turn;
+use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
 /// An open device.
@@ -25,7 +25,7 @@ pub struct Gpu {
     /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
     pub lanes: u32,
     /// Whether work may be handed in.
-    pub turn: Turn,
+    pub submit_gate: SubmitGate,
     trouble: Arc<Mutex<Trouble>>,
 }
 
@@ -110,7 +110,7 @@ impl Gpu {
             tells_version: !info.driver_info.is_empty(),
             timestamps,
             lanes,
-            turn: Turn::default(),
+            submit_gate: SubmitGate::default(),
             trouble,
         })
     }
@@ -154,10 +154,10 @@ impl Gpu {
         Ok(pipeline)
     }
 
-    /// Hands work in, once it is its [`turn`](Self::turn).
+    /// Hands work in, once it passes the [`submit_gate`](Self::submit_gate).
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
         let work = encoder.finish();
-        self.turn.take(|| self.queue.submit([work]))
+        self.submit_gate.pass(|| self.queue.submit([work]))
     }
 
     /// Waits for what was submitted, and for what is to be mapped after it.

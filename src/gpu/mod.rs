@@ -11,7 +11,7 @@ pub mod device;
 pub mod pipeline;
 pub mod selftest;
 pub mod single;
-pub mod turn;
+pub mod submit_gate;
 
 /// What can go wrong on the way to or on the GPU.
 #[derive(Debug, thiserror::Error)]

@@ -7,7 +7,7 @@ use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::device::Gpu;
-use crate::shader::binding::{BINDINGS, JOB, OFFSETS, PIXELS};
+use crate::shader::binding::{BINDINGS, DISPATCH, OFFSETS, PIXELS};
 use crate::shader::feature::{Feature, Features};
 use crate::shader::feature_set::{FeatureSet, QUAD};
 use crate::shader::pack::Packed;
@@ -26,7 +26,7 @@ pub struct Pipeline {
     pub offsets: u32,
     /// Words of a record that the shader leaves of a pixel with sure and doubtful samples; 0 where it leaves none.
     pub partial_words: u32,
-    /// The camera, where the shader reads it from its job.
+    /// The camera, where the shader reads it from the dispatch's record.
     pub camera: Option<CameraNumbers>,
     buffers: SceneBuffers,
 }
@@ -85,15 +85,15 @@ impl Pipeline {
         }
     }
 
-    /// Binds the scene, a job, a buffer for its pixels, and one for the offsets of its samples if they are read.
+    /// Binds the scene, a dispatch's record, a buffer for its pixels, and one for the offsets of its samples if they are read.
     pub fn bind(
         &self,
         gpu: &Gpu,
-        job: &wgpu::Buffer,
+        dispatch: &wgpu::Buffer,
         pixels: &wgpu::Buffer,
         offsets: Option<&wgpu::Buffer>,
     ) -> wgpu::BindGroup {
-        let own = [(JOB, job), (PIXELS, pixels)]
+        let own = [(DISPATCH, dispatch), (PIXELS, pixels)]
             .into_iter()
             .chain(offsets.map(|offsets| (OFFSETS, offsets)));
         let scene = self

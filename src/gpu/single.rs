@@ -11,7 +11,7 @@ use crate::settings::Settings;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::feature_set::FeatureSet;
 use crate::shader::pack::Packed;
-use crate::shader::records::Job;
+use crate::shader::records::Dispatch;
 
 /// 255 times a pixel's value on the GPU.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,7 @@ pub fn features(packed: &Packed, settings: &Settings, lanes: u32) -> FeatureSet 
 #[derive(Debug)]
 pub struct SinglePipeline {
     pipeline: Pipeline,
-    job: wgpu::Buffer,
+    dispatch: wgpu::Buffer,
     pixel: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
@@ -67,14 +67,14 @@ impl SinglePipeline {
             })
         };
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let job = buffer("job", size_of::<Job>() as u64, uniform);
+        let dispatch = buffer("dispatch", size_of::<Dispatch>() as u64, uniform);
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let pixel = buffer("pixel", 32, storage);
-        let group = pipeline.bind(gpu, &job, &pixel, None);
+        let group = pipeline.bind(gpu, &dispatch, &pixel, None);
         gpu.check()?;
         Ok(Some(Self {
             pipeline,
-            job,
+            dispatch,
             pixel,
             group,
         }))
@@ -86,13 +86,13 @@ impl SinglePipeline {
     /// # Errors
     /// As any rendering on the GPU.
     pub fn run(&self, gpu: &Gpu, at: [u32; 2]) -> Result<Option<Single>, GpuError> {
-        let job = Job {
+        let dispatch = Dispatch {
             first: at,
             size: [1, 1],
-            ..Job::zeroed()
+            ..Dispatch::zeroed()
         };
         gpu.queue
-            .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+            .write_buffer(&self.dispatch, 0, bytemuck::bytes_of(&dispatch));
         let left = gpu.run_once(&self.pipeline.pipeline, &self.group, [1, 1], &self.pixel)?;
         let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&left);
         let three = |word: &[u32; 4]| [word[0], word[1], word[2]].map(f32::from_bits);

@@ -69,7 +69,7 @@ impl Boundable for Boxed {
 
 /// The padded box of a sphere, if f32 can hold it.
 fn padded<R: Real>(sphere: &WorldSphere<R>) -> Option<Boxed> {
-    let (center, radius) = (sphere.center.approx(), sphere.radius.approx());
+    let (center, radius) = (sphere.center.to_f64(), sphere.radius.to_f64());
     let corner = |side: f64| {
         let at = |c: f64| {
             let bound = c + side * radius;
@@ -163,7 +163,7 @@ mod tests {
             object,
             center: V3::new(x, y, z),
             radius,
-            level: vec![],
+            lights_on_surface: vec![],
         }
     }
 

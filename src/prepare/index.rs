@@ -24,7 +24,7 @@ pub struct Index {
 }
 
 /// The plane that an index is on, and the camera that sees it.
-struct Seen<'a> {
+struct ViewedPlane<'a> {
     camera: &'a scene::Camera,
     normal: [Ratio; 3],
     point: [Ratio; 3],
@@ -42,7 +42,7 @@ pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
         // Its hits are no quotients of linear forms.
         Shape::Sphere { .. } => return Vec::new(),
     };
-    let seen = Seen {
+    let viewed = ViewedPlane {
         camera: &scene.camera,
         normal: ratio3(*normal),
         point: ratio3(*point),
@@ -55,18 +55,18 @@ pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
             let [x, _, z] = axes;
             let rows = match xdir {
                 None => [Some(x), Some(z)],
-                Some(xdir) => seen.rows(xdir),
+                Some(xdir) => viewed.rows(xdir),
             };
             let sizes = [dimension.x, dimension.y].map(ratio);
             rows.iter()
                 .zip(&sizes)
-                .map(|(row, size)| seen.index(row.as_ref()?, &ratio(TILE_SHIFT), size))
+                .map(|(row, size)| viewed.index(row.as_ref()?, &ratio(TILE_SHIFT), size))
                 .collect()
         }
         scene::Surface::Procedural { .. } => {
             let (shift, size) = (ratio(PPLANE_SHIFT), ratio(PPLANE_TILE));
             axes.iter()
-                .map(|row| seen.index(row, &shift, &size))
+                .map(|row| viewed.index(row, &shift, &size))
                 .collect()
         }
         scene::Surface::Textured { texture, mode } => {
@@ -88,12 +88,13 @@ pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
                     ratio(camera.worlddim.y) / ratio(f64::from(camera.pixeldim[1])),
                 ],
             };
-            seen.rows(rectangle.xdir)
+            viewed
+                .rows(rectangle.xdir)
                 .iter()
                 .zip(&sizes)
                 .map(|(row, size)| {
                     let row = row.as_ref()?;
-                    seen.index(row, &-dot(row, &seen.point), size)
+                    viewed.index(row, &-dot(row, &viewed.point), size)
                 })
                 .collect()
         }
@@ -101,7 +102,7 @@ pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
     }
 }
 
-impl Seen<'_> {
+impl ViewedPlane<'_> {
     /// The unit vectors along the sides, where they are rational.
     fn rows(&self, xdir: DVec3) -> [Option<[Ratio; 3]>; 2] {
         along_sides(&self.normal, &ratio3(xdir)).map(|row| {
@@ -182,12 +183,12 @@ impl Index {
             &self.bottom[axis],
             &self.bottom[2],
         ];
-        let rough = forms.map(Bounded::ratio);
+        let bounded = forms.map(Bounded::ratio);
         (0..pixels)
             .map(|n| {
                 let at = f64::from(n);
-                let bottom = rough[2].times(at) + rough[3];
-                let index = (rough[0].times(at) + rough[1]) / bottom;
+                let bottom = bounded[2].times(at) + bounded[3];
+                let index = (bounded[0].times(at) + bounded[1]) / bottom;
                 match (bottom.positive(), index.floor()) {
                     (Ok(false), _) => None,
                     (Ok(true), Ok(floor)) if floor.abs() < WHOLE => Some(IBig::from(floor as i64)),

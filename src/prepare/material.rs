@@ -24,7 +24,7 @@ pub struct Material<R> {
     /// The same of what comes through.
     pub passed: [bool; 3],
     /// Whether any light goes through.
-    pub clear: bool,
+    pub transparent: bool,
     /// Whether there is a mirror image.
     pub mirror: bool,
 }
@@ -53,7 +53,7 @@ impl<R: Real> Material<R> {
                 .diffuse
                 .to_array()
                 .map(|c| c > 0.0 || largest <= 0.0),
-            clear: material.transparency != 0.0,
+            transparent: material.transparency != 0.0,
             mirror: material.specular.max_element() > 0.0,
         }
     }

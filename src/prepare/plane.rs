@@ -9,7 +9,7 @@ use crate::real::rational::{
     Ratio, abs, dot, is_positive, is_zero, power_of_two, ratio, ratio3, root, sub,
 };
 use crate::scene;
-use crate::settings::View;
+use crate::settings::ViewParameters;
 
 /// A plane that some pixel's ray can hit.
 ///
@@ -83,7 +83,7 @@ impl<R: Real> Plane<R> {
     /// Prepares a plane; None if no ray through the screen can hit it.
     pub fn new(
         camera: &scene::Camera,
-        view: View,
+        view: ViewParameters,
         object: usize,
         normal: DVec3,
         point: DVec3,
@@ -202,10 +202,10 @@ impl Front {
     /// H.z = V.z·(1 − s) ≤ τ, with s > 0, is (V.z − τ)·(1/s) ≤ V.z.
     fn new(
         camera: &scene::Camera,
-        View {
+        ViewParameters {
             screen_tolerance,
             margin,
-        }: View,
+        }: ViewParameters,
         a: &Ratio,
         b: &Ratio,
         c: &Ratio,

@@ -6,16 +6,16 @@ use std::sync::Arc;
 use super::camera::Camera;
 use super::groups::groups;
 use super::hidden::hidden;
-use super::later::{Later, Laters, balls};
 use super::material::Material;
+use super::on_demand::{OnDemandSources, OnDemandSpheres, balls};
 use super::plane::Plane;
+use super::screen_grid::{self, ScreenGrid};
 use super::sphere::Sphere;
 use super::surface::Surface;
-use super::tiles::{self, Tiles};
 use super::world::World;
 use crate::real::Real;
 use crate::scene::{Scene, Shape, Texels};
-use crate::settings::View;
+use crate::settings::ViewParameters;
 
 /// A scene made ready for tracing rays from its viewpoint, in the number type `R`.
 #[derive(Debug, Clone)]
@@ -24,12 +24,12 @@ pub struct Prepared<R> {
     pub camera: Camera<R>,
     /// The planes that a primary ray can hit, in file order.
     pub planes: Vec<Plane<R>>,
-    /// The spheres that a primary ray can hit, in file order; where they are in tiles, those that are seen.
+    /// The spheres that a primary ray can hit, in file order; where they are in the screen's cells, those that are seen.
     pub spheres: Vec<Sphere<R>>,
     /// Where on the screen they are, if there are many.
-    pub tiles: Option<Arc<Tiles>>,
+    pub screen_grid: Option<Arc<ScreenGrid>>,
     /// What spheres are made from that are not in `spheres`.
-    pub later: Option<Later>,
+    pub on_demand: Option<OnDemandSpheres>,
     /// One for each object of the scene: what it looks like.
     pub surfaces: Vec<Surface<R>>,
     /// One for each object of the scene: index of its material.
@@ -41,7 +41,7 @@ pub struct Prepared<R> {
     /// One for each object of the scene: whether it is never hit. `planes` and `spheres` lack those, here and in `world`.
     pub hidden: Arc<Vec<bool>>,
     /// Whether some object lets light through.
-    pub any_clear: bool,
+    pub any_transparent: bool,
     /// The materials of the scene.
     pub palette: Vec<Material<R>>,
     /// The textures of the scene.
@@ -52,17 +52,17 @@ pub struct Prepared<R> {
 
 impl<R: Real> Prepared<R> {
     /// Prepares `scene`.
-    pub fn new(scene: &Scene, view: impl Into<View>) -> Self {
+    pub fn new(scene: &Scene, view: impl Into<ViewParameters>) -> Self {
         let view = view.into();
         let lit = !scene.lights.is_empty();
-        // Of many spheres the tiles leave out equal ones.
-        let equal_spheres = lit || scene.objects.len() < tiles::WORTHWHILE;
+        // Of many spheres the screen grid leaves out equal ones.
+        let equal_spheres = lit || scene.objects.len() < screen_grid::WORTHWHILE;
         let groups = Arc::new(groups(scene, equal_spheres));
         let hidden = hidden(scene, &groups, view.screen_tolerance);
         let mut prepared = Self::of(scene, view, true, &hidden);
-        if scene.objects.len() >= tiles::WORTHWHILE {
-            let (spheres, tiles) = Tiles::sorted(scene, &prepared.camera, view, &hidden);
-            prepared.tiles = (!spheres.is_empty()).then(|| Arc::new(tiles));
+        if scene.objects.len() >= screen_grid::WORTHWHILE {
+            let (spheres, screen_grid) = ScreenGrid::sorted(scene, &prepared.camera, view, &hidden);
+            prepared.screen_grid = (!spheres.is_empty()).then(|| Arc::new(screen_grid));
             prepared.spheres = spheres;
         }
         let materials = scene.objects.iter().map(|object| object.material);
@@ -88,23 +88,30 @@ impl<R: Real> Prepared<R> {
     }
 
     /// Prepares a scene that has been prepared before in another number type, and shares with that what is no number. Where
-    /// `laters` has spheres, they are made when they are asked for.
+    /// `sources` has spheres, they are made when they are asked for.
     pub fn again<S: Real>(
         scene: &Scene,
-        view: View,
+        view: ViewParameters,
         before: &Prepared<S>,
-        laters: &Laters,
+        sources: &OnDemandSources,
     ) -> Self {
-        let prepared = Self::of(scene, view, laters.primary.is_none(), &before.hidden);
+        let prepared = Self::of(scene, view, sources.primary.is_none(), &before.hidden);
         let world = before.world.as_ref().map(|world| {
             let scale = prepared.camera.scale;
-            let later = laters.world.as_ref();
+            let on_demand = sources.world.as_ref();
             let hidden = &before.hidden;
-            World::again(scene, scale, view.screen_tolerance, world, hidden, later)
+            World::again(
+                scene,
+                scale,
+                view.screen_tolerance,
+                world,
+                hidden,
+                on_demand,
+            )
         });
         Self {
-            tiles: before.tiles.clone(),
-            later: laters.primary.clone(),
+            screen_grid: before.screen_grid.clone(),
+            on_demand: sources.primary.clone(),
             materials: Arc::clone(&before.materials),
             is_plane: Arc::clone(&before.is_plane),
             groups: Arc::clone(&before.groups),
@@ -114,13 +121,13 @@ impl<R: Real> Prepared<R> {
         }
     }
 
-    /// The scene without tiles, world and tables; spheres in file order if they are wanted and few.
-    fn of(scene: &Scene, view: View, with_spheres: bool, hidden: &[bool]) -> Self {
+    /// The scene without screen grid, world and tables; spheres in file order if they are wanted and few.
+    fn of(scene: &Scene, view: ViewParameters, with_spheres: bool, hidden: &[bool]) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
         let mut surfaces = Vec::with_capacity(scene.objects.len());
         // Many spheres are made with their tiles, or later.
-        let few = with_spheres && scene.objects.len() < tiles::WORTHWHILE;
+        let few = with_spheres && scene.objects.len() < screen_grid::WORTHWHILE;
         let mut spheres = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             surfaces.push(Surface::new(scene, object));
@@ -148,7 +155,7 @@ impl<R: Real> Prepared<R> {
                 Shape::Sphere { .. } => {}
             }
         }
-        let any_clear = scene
+        let any_transparent = scene
             .objects
             .iter()
             .any(|object| scene.materials[object.material].transparency != 0.0);
@@ -162,14 +169,14 @@ impl<R: Real> Prepared<R> {
             camera,
             planes,
             spheres,
-            tiles: None,
-            later: None,
+            screen_grid: None,
+            on_demand: None,
             surfaces,
             materials: Arc::default(),
             is_plane: Arc::default(),
             groups: Arc::default(),
             hidden: Arc::default(),
-            any_clear,
+            any_transparent,
             palette,
             textures,
             world: None,
@@ -177,28 +184,30 @@ impl<R: Real> Prepared<R> {
     }
 
     /// What the spheres are made from one by one in another number type, where they are many.
-    pub fn laters(&self, scene: &Scene) -> Laters {
+    pub fn sources(&self, scene: &Scene) -> OnDemandSources {
         let world = self.world.as_ref().filter(|world| world.bvh.is_some());
-        if self.tiles.is_none() && world.is_none() {
-            return Laters::default();
+        if self.screen_grid.is_none() && world.is_none() {
+            return OnDemandSources::default();
         }
         let (balls, scale) = (balls(scene), self.camera.scale);
-        Laters {
-            primary: self.tiles.as_ref().map(|_| {
+        OnDemandSources {
+            primary: self.screen_grid.as_ref().map(|_| {
                 let order = self.spheres.iter().map(|s| s.object);
-                Later::new(scene, scale, &balls, order, HashMap::new())
+                OnDemandSpheres::new(scene, scale, &balls, order, HashMap::new())
             }),
-            world: world.map(|world| world.later(scene, scale, &balls)),
+            world: world.map(|world| world.on_demand(scene, scale, &balls)),
         }
     }
 
     /// How many spheres a primary ray can hit.
     pub fn sphere_count(&self) -> usize {
-        self.later.as_ref().map_or(self.spheres.len(), Later::count)
+        self.on_demand
+            .as_ref()
+            .map_or(self.spheres.len(), OnDemandSpheres::count)
     }
 
     /// A sphere that is not in `spheres`.
     pub fn make_sphere(&self, index: usize) -> Option<Sphere<R>> {
-        self.later.as_ref()?.primary(&self.camera, index)
+        self.on_demand.as_ref()?.primary(&self.camera, index)
     }
 }

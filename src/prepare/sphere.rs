@@ -25,7 +25,7 @@ pub struct Sphere<R> {
     /// |C| / (|C|² − r²), per unit of 2^scale.
     pub gain: R,
     /// Where the center is seen on the screen, for a sphere seen small enough; else disc comes from κ².
-    pub seen: Option<Seen<R>>,
+    pub projected: Option<ProjectedCenter<R>>,
 }
 
 /// The center's projection onto the screen, and the offset of a pixel's ray from it:
@@ -33,7 +33,7 @@ pub struct Sphere<R> {
 ///
 /// e × W is then e × (W − W_c), a sum without cancellation, however small and far the sphere is.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen<R> {
+pub struct ProjectedCenter<R> {
     /// The pixel next to the projected center.
     pub anchor: [i32; 2],
     /// W − W_c at that pixel, in units of 2^scale.
@@ -64,7 +64,7 @@ impl<R: Real> Sphere<R> {
         let mut power = c2 - r * r;
         // Near the surface the difference of squares has lost its bits, its sign first: there it is taken exactly.
         // Likewise where squares are out of f64's range, and nothing is larger than anything.
-        let (near, far) = (power.approx(), c2.approx());
+        let (near, far) = (power.to_f64(), c2.to_f64());
         if !(near.abs() > 1e-6 * far && near.is_finite() && far.is_finite()) {
             let exact = power_of_viewpoint(viewpoint, center, radius);
             if exact <= Ratio::ZERO {
@@ -84,8 +84,8 @@ impl<R: Real> Sphere<R> {
             rho2,
             kappa2: power / c2,
             gain: distance / power,
-            seen: (rho2.approx() <= SMALL_RHO2)
-                .then(|| seen(prepared, c))
+            projected: (rho2.to_f64() <= SMALL_RHO2)
+                .then(|| projected(prepared, c))
                 .flatten(),
         })
     }
@@ -99,15 +99,15 @@ fn power_of_viewpoint(viewpoint: DVec3, center: DVec3, radius: f64) -> Ratio {
 }
 
 /// The projection of the center `c`, if it is on the screen's side of the viewpoint and not too far out.
-fn seen<R: Real>(camera: &Camera<R>, c: V3<R>) -> Option<Seen<R>> {
-    if c.z.approx() >= 0.0 {
+fn projected<R: Real>(camera: &Camera<R>, c: V3<R>) -> Option<ProjectedCenter<R>> {
+    if c.z.to_f64() >= 0.0 {
         return None;
     }
     let depth = camera.distance / -c.z;
     let axis = |i: usize, center: R| {
         let projected = center * depth;
-        let column = if camera.step[i].approx() > 0.0 {
-            let steps = (projected.approx() - camera.offset[i].approx()) / camera.step[i].approx();
+        let column = if camera.step[i].to_f64() > 0.0 {
+            let steps = (projected.to_f64() - camera.offset[i].to_f64()) / camera.step[i].to_f64();
             (f64::from(camera.anchor[i]) + steps).round()
         } else {
             0.0
@@ -118,7 +118,7 @@ fn seen<R: Real>(camera: &Camera<R>, c: V3<R>) -> Option<Seen<R>> {
     };
     let (ax, ox) = axis(0, c.x)?;
     let (ay, oy) = axis(1, c.y)?;
-    Some(Seen {
+    Some(ProjectedCenter {
         anchor: [ax, ay],
         offset: [ox, oy],
     })

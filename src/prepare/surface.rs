@@ -150,8 +150,8 @@ impl<R: Real> Tiled<R> {
         let view = camera.viewpoint;
         let scale = camera::exponent(view.z);
         let index = |axis: usize, d: f64| {
-            let own = own(normal, point, axis);
-            TileIndex::new(view[axis], own, TILE_SHIFT, d, scale)
+            let fixed_coordinate = fixed_coordinate(normal, point, axis);
+            TileIndex::new(view[axis], fixed_coordinate, TILE_SHIFT, d, scale)
         };
         Self {
             rows: None,
@@ -215,8 +215,14 @@ impl<R: Real> Pplane<R> {
         let view = camera.viewpoint;
         let scale = camera::exponent(view.z);
         let index = |axis: usize| {
-            let own = own(normal, point, axis);
-            TileIndex::new(view[axis], own, PPLANE_SHIFT, PPLANE_TILE, scale)
+            let fixed_coordinate = fixed_coordinate(normal, point, axis);
+            TileIndex::new(
+                view[axis],
+                fixed_coordinate,
+                PPLANE_SHIFT,
+                PPLANE_TILE,
+                scale,
+            )
         };
         let from_point = |axis: usize| FromPoint::new(view[axis], normal, point, axis, scale);
         Self {
@@ -228,7 +234,7 @@ impl<R: Real> Pplane<R> {
 }
 
 /// The coordinate that every point of the plane shares, if it is perpendicular to that axis.
-fn own(normal: DVec3, point: DVec3, axis: usize) -> Option<f64> {
+fn fixed_coordinate(normal: DVec3, point: DVec3, axis: usize) -> Option<f64> {
     let n = ratio3(normal);
     (0..3)
         .all(|i| i == axis || is_zero(&n[i]))
@@ -236,10 +242,10 @@ fn own(normal: DVec3, point: DVec3, axis: usize) -> Option<f64> {
 }
 
 impl<R: Real> TileIndex<R> {
-    fn new(view: f64, own: Option<f64>, shift: f64, d: f64, scale: i32) -> Self {
+    fn new(view: f64, fixed_coordinate: Option<f64>, shift: f64, d: f64, scale: i32) -> Self {
         let index_of = |h: f64| -> Ratio { (ratio(h) + ratio(shift)) / ratio(d) };
-        if let Some(own) = own {
-            let whole = index_of(own).floor();
+        if let Some(fixed_coordinate) = fixed_coordinate {
+            let whole = index_of(fixed_coordinate).floor();
             return Self {
                 per_unit: R::zero(),
                 fraction: R::exact(0.5),
@@ -260,7 +266,7 @@ impl<R: Real> TileIndex<R> {
         let d = R::exact(d);
         let index = (view + R::exact(TILE_SHIFT)) / d;
         // Any whole number near the index will do: what is left need not lie in [0, 1).
-        let whole = index.approx().floor();
+        let whole = index.to_f64().floor();
         let whole = if whole.is_finite() { whole } else { 0.0 };
         Self {
             per_unit: R::exact(two_to(scale)) / d,
@@ -277,7 +283,7 @@ impl<R: Real> TileIndex<R> {
 
 impl<R: Real> FromPoint<R> {
     fn new(view: f64, normal: DVec3, point: DVec3, axis: usize, scale: i32) -> Self {
-        if own(normal, point, axis).is_some() {
+        if fixed_coordinate(normal, point, axis).is_some() {
             return Self {
                 per_unit: R::zero(),
                 offset: R::zero(),

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use super::bvh::{self, Bvh};
 use super::extent::Extent;
-use super::later::{Balls, Later};
 use super::material::Light;
+use super::on_demand::{Balls, OnDemandSpheres};
 use super::world_plane::WorldPlane;
 use super::world_sphere::{WorldSphere, lights_on_sphere};
 use crate::real::rational::{power_of_two, ratio, two_to};
@@ -25,7 +25,7 @@ pub struct World<R> {
     /// The tree over the spheres, if they are many.
     pub bvh: Option<Arc<Bvh>>,
     /// What spheres are made from that are not in `spheres`.
-    pub later: Option<Later>,
+    pub on_demand: Option<OnDemandSpheres>,
     /// The lights, in file order.
     pub lights: Vec<Light<R>>,
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
@@ -60,19 +60,19 @@ impl<R: Real> World<R> {
         world
     }
 
-    /// Prepares a lit scene that has been prepared before in another number type; with `later`, spheres one by one.
+    /// Prepares a lit scene that has been prepared before in another number type; with `on_demand`, spheres one by one.
     pub(super) fn again<S: Real>(
         scene: &Scene,
         scale: i32,
         screen_tolerance: f64,
         before: &World<S>,
         hidden: &[bool],
-        later: Option<&Later>,
+        on_demand: Option<&OnDemandSpheres>,
     ) -> Self {
         let (groups, places) = (Arc::clone(&before.groups), Arc::clone(&before.places));
         Self {
             bvh: before.bvh.clone(),
-            later: later.cloned(),
+            on_demand: on_demand.cloned(),
             ..Self::of(
                 scene,
                 scale,
@@ -80,7 +80,7 @@ impl<R: Real> World<R> {
                 groups,
                 places,
                 hidden,
-                later.is_none(),
+                on_demand.is_none(),
             )
         }
     }
@@ -101,7 +101,7 @@ impl<R: Real> World<R> {
             planes: Vec::new(),
             spheres: Vec::new(),
             bvh: None,
-            later: None,
+            on_demand: None,
             lights: scene
                 .lights
                 .iter()
@@ -130,7 +130,7 @@ impl<R: Real> World<R> {
                     object,
                     center: (V3::exact(center) - view) * unit,
                     radius: R::exact(radius) * unit,
-                    level: lights_on_sphere(scene, center, radius),
+                    lights_on_surface: lights_on_sphere(scene, center, radius),
                 }),
                 Shape::Sphere { .. } => {}
             }
@@ -139,20 +139,25 @@ impl<R: Real> World<R> {
     }
 
     /// What the spheres are made from one by one in another number type.
-    pub(super) fn later(&self, scene: &Scene, scale: i32, balls: &Balls) -> Later {
+    pub(super) fn on_demand(&self, scene: &Scene, scale: i32, balls: &Balls) -> OnDemandSpheres {
         let order = self.spheres.iter().map(|s| s.object);
-        let lit = self.spheres.iter().filter(|s| !s.level.is_empty());
-        let levels = lit.map(|s| (s.object as u32, s.level.clone()));
-        Later::new(scene, scale, balls, order, levels.collect())
+        let lit = self
+            .spheres
+            .iter()
+            .filter(|s| !s.lights_on_surface.is_empty());
+        let levels = lit.map(|s| (s.object as u32, s.lights_on_surface.clone()));
+        OnDemandSpheres::new(scene, scale, balls, order, levels.collect())
     }
 
     /// How many spheres there are.
     pub fn sphere_count(&self) -> usize {
-        self.later.as_ref().map_or(self.spheres.len(), Later::count)
+        self.on_demand
+            .as_ref()
+            .map_or(self.spheres.len(), OnDemandSpheres::count)
     }
 
     /// A sphere that is not in `spheres`; there is one for each place below [`sphere_count`](Self::sphere_count).
     pub fn make_sphere(&self, place: usize) -> Option<WorldSphere<R>> {
-        self.later.as_ref()?.world(place)
+        self.on_demand.as_ref()?.world(place)
     }
 }

@@ -24,11 +24,11 @@ pub struct WorldPlane<R> {
     /// does not let errors grow, as D − 2(D·N)N would: three times at each mirror.
     pub mirror: [V3<R>; 3],
     /// If the plane is perpendicular to an axis: which, and the coordinate that all its points share.
-    pub own: Option<(usize, R)>,
+    pub fixed_coordinate: Option<(usize, R)>,
     /// Where it ends.
     pub extent: Extent<R>,
     /// Lights that lie in the plane exactly, ascending.
-    pub level: Vec<usize>,
+    pub lights_on_surface: Vec<usize>,
 }
 
 impl<R: Real> WorldPlane<R> {
@@ -61,9 +61,9 @@ impl<R: Real> WorldPlane<R> {
             direction,
             constant: offset,
             mirror: mirror(&n),
-            own: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
+            fixed_coordinate: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
             extent,
-            level: lights_on_plane(scene, normal, point),
+            lights_on_surface: lights_on_plane(scene, normal, point),
         }
     }
 }
@@ -73,9 +73,9 @@ fn lights_on_plane(scene: &Scene, normal: DVec3, point: DVec3) -> Vec<usize> {
     let on = |light: &Light| {
         let light = light.location;
         // Most lights are far from most planes, and f64 is enough to say so.
-        let rough = normal.dot(light - point).abs();
+        let estimate = normal.dot(light - point).abs();
         let size = normal.abs().dot(light.abs() + point.abs());
-        (rough <= 1e-9 * size || !rough.is_normal())
+        (estimate <= 1e-9 * size || !estimate.is_normal())
             && is_zero(&dot(&ratio3(normal), &sub(&ratio3(light), &ratio3(point))))
     };
     (0..scene.lights.len())
@@ -88,8 +88,8 @@ fn mirror<R: Real>(n: &[Ratio; 3]) -> [V3<R>; 3] {
     let nn = dot(n, n);
     [0, 1, 2].map(|i| {
         let [x, y, z] = [0, 1, 2].map(|j| {
-            let own = ratio(if i == j { 1.0 } else { 0.0 });
-            R::ratio(&(own - ratio(2.0) * &n[i] * &n[j] / &nn))
+            let unit = ratio(if i == j { 1.0 } else { 0.0 });
+            R::ratio(&(unit - ratio(2.0) * &n[i] * &n[j] / &nn))
         });
         V3::new(x, y, z)
     })

@@ -1,4 +1,4 @@
-//! A sphere as rays from anywhere see it. The floor below `bvh`, `later` and `world`.
+//! A sphere as rays from anywhere see it. The floor below `bvh`, `on_demand` and `world`.
 
 use glam::DVec3;
 
@@ -16,18 +16,19 @@ pub struct WorldSphere<R> {
     /// Its radius.
     pub radius: R,
     /// Lights that lie on the sphere exactly, ascending.
-    pub level: Vec<usize>,
+    pub lights_on_surface: Vec<usize>,
 }
 
 /// The lights that lie on the sphere exactly, ascending.
 pub(super) fn lights_on_sphere(scene: &Scene, center: DVec3, radius: f64) -> Vec<usize> {
     let on = |light: &Light| {
-        let rough = (light.location - center).length();
-        (rough - radius).abs() <= 1e-9 * (radius + light.location.length() + center.length()) && {
-            let d = sub(&ratio3(light.location), &ratio3(center));
-            let r = ratio(radius);
-            dot(&d, &d) == &r * &r
-        }
+        let estimate = (light.location - center).length();
+        (estimate - radius).abs() <= 1e-9 * (radius + light.location.length() + center.length())
+            && {
+                let d = sub(&ratio3(light.location), &ratio3(center));
+                let r = ratio(radius);
+                dot(&d, &d) == &r * &r
+            }
     };
     (0..scene.lights.len())
         .filter(|&i| on(&scene.lights[i]))

@@ -14,18 +14,18 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Rect, Ui};
 
-use super::desk::Desk;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
 use super::keys;
 use super::overlay::{self, Chosen, Leaving, SaveAs};
 use super::picture::{self, Showing};
-use super::screen::{self, Seen};
+use super::screen::{self, ObjectMap};
 use super::session::{self, Session};
+use super::shared_session::SharedSession;
 use super::side::{self, Side};
 use super::status::{self, Line};
 use super::watch::Watcher;
-use super::worker::{self, Picture, Worker};
+use super::worker::{self, PreviewPicture, Worker};
 use super::{Options, inspector};
 use crate::gpu::canvas::Scatter;
 use crate::gpu::device::Gpu;
@@ -63,7 +63,7 @@ impl Teller {
 pub(super) struct App {
     gpu: Arc<Gpu>,
     options: Options,
-    desk: Desk,
+    shared: SharedSession,
     events: Receiver<Event>,
     teller: Teller,
     worker: Worker,
@@ -71,7 +71,7 @@ pub(super) struct App {
     /// Watches as long as it lives.
     _watcher: Watcher,
     /// The picture that is shown.
-    picture: Option<Picture>,
+    picture: Option<PreviewPicture>,
     /// Why the newest wish could not be fulfilled.
     failed: Option<String>,
     showing: Showing,
@@ -81,7 +81,7 @@ pub(super) struct App {
     panel_open: bool,
     /// What was asked last: of which wish, which pixel; whether the picture stays, whether which objects are seen.
     asked: Option<(u64, Option<[u32; 2]>, [bool; 2])>,
-    seen: Option<(u64, Arc<Seen>)>,
+    seen: Option<(u64, Arc<ObjectMap>)>,
     outlined: Option<(u64, EntityId)>,
     over: Option<[u32; 2]>,
     area: Option<Rect>,
@@ -129,8 +129,8 @@ impl App {
             })?;
         let tell = teller.clone();
         let session = Session::new(options.path.clone(), options.size);
-        let desk = Desk::new(session, Arc::clone(&worker.wishes));
-        let file = desk.clone();
+        let shared = SharedSession::new(session, Arc::clone(&worker.wishes));
+        let file = shared.clone();
         let path = options.path.clone();
         let watcher = Watcher::new(&options.path, move |news| {
             // What is rendered now wakes the window when it is there.
@@ -139,7 +139,7 @@ impl App {
             }
         })?;
         Ok(Self {
-            desk,
+            shared,
             gpu,
             options,
             events,
@@ -191,7 +191,7 @@ impl App {
                     self.picture = Some(*picture);
                 }
                 Event::Rendered(worker::News::Failed { number, why }) => {
-                    if number == self.desk.lock().wished {
+                    if number == self.shared.lock().wished {
                         self.failed = Some(why);
                     }
                 }
@@ -206,7 +206,7 @@ impl App {
                 }
             }
         }
-        let said = std::mem::take(&mut self.desk.lock().session.said);
+        let said = std::mem::take(&mut self.shared.lock().session.said);
         said.into_iter().for_each(|text| self.say(text));
     }
 
@@ -223,8 +223,8 @@ impl App {
 
     fn set_title(&mut self, context: &Context) {
         let kind = self.picture.as_ref().map(status::kind).unwrap_or_default();
-        let paper = self.desk.lock();
-        let session = &paper.session;
+        let state = self.shared.lock();
+        let session = &state.session;
         let star = if session.changes().is_empty() {
             ""
         } else {
@@ -240,7 +240,7 @@ impl App {
         } else if !kind.is_empty() {
             title.push_str(&format!(" – {kind}"));
         }
-        drop(paper);
+        drop(state);
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -251,14 +251,16 @@ impl App {
         let frames = self.frames();
         let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
         let picture = self.picture.as_ref();
-        let wished = self.desk.lock().wished;
+        let wished = self.shared.lock().wished;
         let working =
             picture.map_or(wished > 0, |picture| picture.number != wished) && self.failed.is_none();
         let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
         let scale = f64::from(ui.ctx().pixels_per_point());
-        let placed = self
-            .area
-            .map(|rect| self.showing.look.place(picture::area(rect, scale), size));
+        let placed = self.area.map(|rect| {
+            self.showing
+                .viewport
+                .place(picture::area(rect, scale), size)
+        });
         let line = Line {
             working,
             share: self.worker.progress.share(),
@@ -281,7 +283,7 @@ impl App {
 
     fn middle(&mut self, ui: &mut Ui) {
         let rect = ui.available_rect_before_wrap();
-        let trouble = self.desk.lock().session.trouble.clone();
+        let trouble = self.shared.lock().session.trouble.clone();
         match &self.picture {
             Some(picture) => {
                 let held = self.panel.held;
@@ -319,8 +321,8 @@ impl App {
 impl App {
     /// Asks before changes are lost.
     fn leave(&mut self, context: &Context) {
-        let lost = self.desk.lock().session.to_be_lost();
-        let name = self.desk.lock().session.name();
+        let lost = self.shared.lock().session.to_be_lost();
+        let name = self.shared.lock().session.name();
         let asked_to = context.input(|input| input.viewport().close_requested());
         if asked_to && lost > 0 && self.leaving.is_none() {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
@@ -335,7 +337,7 @@ impl App {
                     self.save_changes();
                 }
                 Some(Leaving::Lose) => {
-                    self.desk.lock().change(|session| session.discard(None));
+                    self.shared.lock().change(|session| session.discard(None));
                     self.leaving = None;
                     context.send_viewport_cmd(close);
                 }
@@ -365,7 +367,7 @@ impl eframe::App for App {
             let wanted = egui::Panel::right("side")
                 .default_size(side::WIDTH)
                 .show(ui, |ui| {
-                    side::show(ui, &mut self.side, &self.desk.lock().session)
+                    side::show(ui, &mut self.side, &self.shared.lock().session)
                 });
             for wanted in wanted.inner {
                 self.do_wanted(&context, wanted);

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 
 use rayon::prelude::*;
 
-use super::newest::{Newest, Taker, newest};
+use super::latest::{LatestReceiver, LatestSender, latest};
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::gpu::device::Gpu;
@@ -53,7 +53,7 @@ pub(super) enum Answer {
 /// The thread, as the window has it. Dropped, it ends soon.
 #[derive(Debug)]
 pub(super) struct Inspector {
-    questions: Option<Newest<Question>>,
+    questions: Option<LatestSender<Question>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -67,13 +67,13 @@ impl Inspector {
         settings: Settings,
         mut tell: impl FnMut(Answer) + Send + 'static,
     ) -> std::io::Result<Self> {
-        let (questions, taker) = newest::<Question>();
+        let (questions, receiver) = latest::<Question>();
         let thread = std::thread::Builder::new()
             .name("inspect".into())
             .spawn(move || {
-                let mut next = taker.take();
+                let mut next = receiver.take();
                 while let Some(question) = next {
-                    next = about(&gpu, &settings, &taker, question, &mut tell);
+                    next = about(&gpu, &settings, &receiver, question, &mut tell);
                 }
             })?;
         Ok(Self {
@@ -104,7 +104,7 @@ impl Drop for Inspector {
 fn about(
     gpu: &Gpu,
     settings: &Settings,
-    taker: &Taker<Question>,
+    receiver: &LatestReceiver<Question>,
     (mut number, mut question): (u64, Question),
     tell: &mut impl FnMut(Answer),
 ) -> Option<(u64, Question)> {
@@ -128,7 +128,7 @@ fn about(
             });
         }
         if question.objects
-            && let Some(objects) = objects(&scene, settings, || taker.is_old(number))
+            && let Some(objects) = objects(&scene, settings, || receiver.is_old(number))
         {
             tell(Answer::Objects {
                 number: question.number,
@@ -136,7 +136,7 @@ fn about(
                 objects,
             });
         }
-        (number, question) = taker.take()?;
+        (number, question) = receiver.take()?;
         if !Arc::ptr_eq(&question.scene, &scene) {
             return Some((number, question));
         }

@@ -9,23 +9,23 @@
 //!
 //! Above `render`, `probe` and `edit`, which know nothing of it. Only compiled with the feature `preview`.
 
+mod adaptive_resolution;
 mod app;
-mod desk;
 mod inspect;
 mod inspector;
 mod keys;
-mod ladder;
-mod look;
-mod newest;
+mod latest;
 mod overlay;
 mod picture;
 mod save;
 mod screen;
 mod session;
+mod shared_session;
 mod shell;
 mod side;
 mod status;
 mod values;
+mod viewport;
 mod watch;
 mod worker;
 
@@ -110,7 +110,7 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
                 let action = on_surface_status(surface);
                 if matches!(action, egui_wgpu::SurfaceErrorAction::Reconfigure) {
                     // That is done at once; the shell opens this again.
-                    status.turn.close();
+                    status.submit_gate.close();
                 }
                 action
             }),

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use eframe::egui::{self, Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Ui};
 use eframe::egui_wgpu::Callback;
 
-use super::look::{Area, Look, Placed};
 use super::screen::{Draw, Outlined};
-use super::worker::Picture;
+use super::viewport::{Area, Placed, Viewport};
+use super::worker::PreviewPicture;
 
 /// Pixels of the picture show their bytes where they are at least so many points large.
 const LABELLED: f64 = 30.0;
@@ -29,7 +29,7 @@ pub(super) struct Mouse {
 #[derive(Debug, Default)]
 pub(super) struct Showing {
     /// Where in its area, how large.
-    pub(super) look: Look,
+    pub(super) viewport: Viewport,
     /// Whether what decided each pixel is painted over it.
     pub(super) verdicts: bool,
     /// The button that drags, and where the mouse was when that was last followed, in points.
@@ -41,7 +41,7 @@ pub(super) struct Showing {
 /// Shows the picture in all the room that there is; what the mouse did, where it is, and in which area.
 pub(super) fn show(
     ui: &mut Ui,
-    picture: &Picture,
+    picture: &PreviewPicture,
     showing: &mut Showing,
     held: Option<[u32; 2]>,
 ) -> (Mouse, Placed, Rect) {
@@ -57,20 +57,20 @@ pub(super) fn show(
     if delta != egui::Vec2::ZERO {
         let by = [f64::from(delta.x) * scale, f64::from(delta.y) * scale];
         if button == Some(PointerButton::Primary) {
-            let zoom = showing.look.place(area, size).zoom;
+            let zoom = showing.viewport.place(area, size).zoom;
             mouse.dragged = by.map(|pixels| pixels / zoom);
         } else {
-            showing.look.pan(by, area, size);
+            showing.viewport.pan(by, area, size);
         }
     }
     if let Some(at) = over {
         let (turned, zoomed) = ui.input(turned);
         mouse.wheel = turned;
         for _ in 0..zoomed.abs().round() as u32 {
-            showing.look.step(zoomed > 0.0, at, area, size);
+            showing.viewport.step(zoomed > 0.0, at, area, size);
         }
     }
-    let placed = showing.look.place(area, size);
+    let placed = showing.viewport.place(area, size);
     mouse.over = over.and_then(|at| placed.pixel(at, size));
     mouse.clicked = response.clicked_by(PointerButton::Primary);
     let draw = Draw {
@@ -175,7 +175,7 @@ fn turned(input: &egui::InputState) -> (f64, f64) {
 }
 
 /// The bytes of a pixel: column, and row from the bottom.
-pub(super) fn bytes(picture: &Picture, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
+pub(super) fn bytes(picture: &PreviewPicture, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
     let [width, height] = picture.canvas.size;
     if picture.canvas.size != picture.scene.camera.pixeldim || x >= width || y >= height {
         return None;
@@ -187,7 +187,7 @@ pub(super) fn bytes(picture: &Picture, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
 /// Writes their bytes into the pixels that are seen.
 fn label(
     painter: &egui::Painter,
-    picture: &Picture,
+    picture: &PreviewPicture,
     placed: &Placed,
     area: Area,
     cell: &dyn Fn([u32; 2]) -> Rect,

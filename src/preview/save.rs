@@ -11,7 +11,7 @@ use crate::render::{self, Backend, Live, Precision, Settings, render_live};
 use crate::scene::Scene;
 
 /// A picture to be saved.
-pub(super) struct Job {
+pub(super) struct SaveTask {
     /// The device, if the GPU is to render.
     pub(super) gpu: Arc<Gpu>,
     /// The scene, and what is changed on top of it.
@@ -27,7 +27,7 @@ pub(super) struct Job {
     pub(super) stop: Arc<AtomicBool>,
 }
 
-impl Job {
+impl SaveTask {
     /// Renders and writes. What was done, or why not, in a sentence.
     pub(super) fn run(&self) -> Result<String, String> {
         self.save()

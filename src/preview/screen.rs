@@ -10,15 +10,15 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use eframe::epaint::PaintCallbackInfo;
 use wgpu::util::DeviceExt as _;
 
-use super::look::Placed;
+use super::viewport::Placed;
 use crate::certify::verdict;
-use crate::frame::Stage;
+use crate::frame::DecidedBy;
 use crate::gpu::canvas::Canvas;
 
-/// What the shader is told; its struct `View`.
+/// What the shader is told; its struct `ScreenUniforms`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-struct View {
+struct ScreenUniforms {
     origin: [i32; 2],
     size: [u32; 2],
     canvas: [u32; 2],
@@ -31,7 +31,7 @@ struct View {
 
 /// What each pixel of a picture sees, on the GPU.
 #[derive(Debug)]
-pub(super) struct Seen {
+pub(super) struct ObjectMap {
     /// Columns and rows.
     pub(super) size: [u32; 2],
     /// Numbers of objects, from 1; 0 is nothing. Rows from the top.
@@ -42,7 +42,7 @@ pub(super) struct Seen {
 #[derive(Debug, Clone)]
 pub(super) struct Outlined {
     /// What each pixel sees.
-    pub(super) seen: Arc<Seen>,
+    pub(super) seen: Arc<ObjectMap>,
     /// A bit for each number of an object.
     pub(super) chosen: Arc<wgpu::Buffer>,
 }
@@ -77,13 +77,13 @@ pub(super) fn wgsl() -> String {
     let mut wgsl = String::from(include_str!("screen.wgsl"));
     wgsl.push_str(
         "\n// Sure pixels step back; the others have the colour of what decided them.\n\
-         fn verdict(stage: u32, bytes: vec3f) -> vec3f {\n    switch stage {\n",
+         fn verdict(by: u32, bytes: vec3f) -> vec3f {\n    switch by {\n",
     );
-    for stage in Stage::ALL {
-        let [r, g, b] = verdict::color(stage);
-        let number = stage as u8;
-        let line = match stage {
-            Stage::Gpu | Stage::Single => {
+    for by in DecidedBy::ALL {
+        let [r, g, b] = verdict::color(by);
+        let number = by as u8;
+        let line = match by {
+            DecidedBy::Gpu | DecidedBy::Single => {
                 format!(
                     "        case {number}u: {{ return 0.3 * bytes + 0.3 * vec3f({r}.0, {g}.0, {b}.0); }}\n"
                 )
@@ -130,7 +130,7 @@ pub(super) fn install(state: &RenderState) {
     });
     let view = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("view"),
-        size: size_of::<View>() as u64,
+        size: size_of::<ScreenUniforms>() as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
@@ -160,7 +160,7 @@ impl CallbackTrait for Draw {
         let Some(screen) = resources.get_mut::<Screen>() else {
             return Vec::new();
         };
-        let view = View {
+        let view = ScreenUniforms {
             origin: self.placed.origin,
             size: self.size,
             canvas: self.canvas.size,
@@ -224,7 +224,7 @@ mod tests {
         let view = module
             .types
             .iter()
-            .find(|(_, ty)| ty.name.as_deref() == Some("View"));
+            .find(|(_, ty)| ty.name.as_deref() == Some("ScreenUniforms"));
         let Some((
             _,
             naga::Type {
@@ -233,24 +233,24 @@ mod tests {
             },
         )) = view
         else {
-            panic!("no struct View");
+            panic!("no struct ScreenUniforms");
         };
         let offsets: Vec<_> = members
             .iter()
             .map(|member| member.offset as usize)
             .collect();
-        assert_eq!(*span as usize, size_of::<View>());
+        assert_eq!(*span as usize, size_of::<ScreenUniforms>());
         assert_eq!(
             offsets,
             [
-                std::mem::offset_of!(View, origin),
-                std::mem::offset_of!(View, size),
-                std::mem::offset_of!(View, canvas),
-                std::mem::offset_of!(View, marked),
-                std::mem::offset_of!(View, zoom),
-                std::mem::offset_of!(View, times),
-                std::mem::offset_of!(View, verdicts),
-                std::mem::offset_of!(View, linear),
+                std::mem::offset_of!(ScreenUniforms, origin),
+                std::mem::offset_of!(ScreenUniforms, size),
+                std::mem::offset_of!(ScreenUniforms, canvas),
+                std::mem::offset_of!(ScreenUniforms, marked),
+                std::mem::offset_of!(ScreenUniforms, zoom),
+                std::mem::offset_of!(ScreenUniforms, times),
+                std::mem::offset_of!(ScreenUniforms, verdicts),
+                std::mem::offset_of!(ScreenUniforms, linear),
             ]
         );
     }

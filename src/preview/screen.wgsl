@@ -1,6 +1,6 @@
 // Draws a picture from its buffer: each pixel of the window takes a word, and shows its bytes as they are.
 
-struct View {
+struct ScreenUniforms {
     // Where the picture's top left corner is, in pixels of the window.
     origin: vec2i,
     // Columns and rows that the picture is drawn as; of the buffer; of the buffer of objects.
@@ -16,7 +16,7 @@ struct View {
     linear: u32,
 }
 
-@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(0) var<uniform> view: ScreenUniforms;
 // Red, green, blue from the lowest byte up, and what decided them.
 @group(0) @binding(1) var<storage, read> pixels: array<u32>;
 // What each pixel sees: the number of an object, from 1; 0 is nothing.

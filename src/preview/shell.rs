@@ -27,7 +27,7 @@ impl Shell<'_> {
     /// Lets the others go on: not only if an event told that the size changes, since a surface that turns out to be outdated
     /// while it is drawn keeps them away too.
     fn done(&self) {
-        self.gpu.turn.open();
+        self.gpu.submit_gate.open();
     }
 }
 
@@ -44,7 +44,7 @@ impl ApplicationHandler<UserEvent> for Shell<'_> {
         let settles = matches!(event, WindowEvent::RedrawRequested)
             && self.resized.is_some_and(|when| when.elapsed() < SETTLES);
         if resizes || settles {
-            self.gpu.turn.close();
+            self.gpu.submit_gate.close();
         }
         self.inner.window_event(active, window, event);
         self.done();

@@ -3,11 +3,11 @@
 use eframe::egui::{self, RichText, Ui};
 
 use super::values::short;
-use super::worker::Picture;
+use super::worker::PreviewPicture;
 use crate::render::{Backend, Precision};
 
 /// How the picture that is shown came about, in a few words.
-pub(super) fn kind(picture: &Picture) -> String {
+pub(super) fn kind(picture: &PreviewPicture) -> String {
     let [width, height] = picture.scene.camera.pixeldim;
     let mut kind = match picture.precision {
         Precision::Certified => String::from("certified"),
@@ -28,7 +28,7 @@ pub(super) fn kind(picture: &Picture) -> String {
 }
 
 /// What the status line says of a picture.
-pub(super) fn figures(picture: &Picture) -> String {
+pub(super) fn figures(picture: &PreviewPicture) -> String {
     let report = &picture.report;
     let [width, height] = [report.width, report.height];
     let rate = report.pixels as f64 / report.seconds.total.max(1e-9) * 1e-6;
@@ -47,7 +47,7 @@ pub(super) fn figures(picture: &Picture) -> String {
 }
 
 /// What else is to be said of a picture, if anything: why the CPU rendered, what is not proven.
-pub(super) fn remarks(picture: &Picture) -> Vec<String> {
+pub(super) fn remarks(picture: &PreviewPicture) -> Vec<String> {
     let report = &picture.report;
     let mut remarks: Vec<String> = report.fallback.iter().cloned().collect();
     if let Some(revoked) = &report.revoked {
@@ -79,7 +79,7 @@ pub(super) struct Line {
 }
 
 /// Shows the line. Whether the help was asked for.
-pub(super) fn show(ui: &mut Ui, picture: Option<&Picture>, line: &Line) -> bool {
+pub(super) fn show(ui: &mut Ui, picture: Option<&PreviewPicture>, line: &Line) -> bool {
     let mut help = false;
     ui.horizontal(|ui| {
         match picture {

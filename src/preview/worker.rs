@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::ladder::Ladder;
-use super::newest::{Newest, Taker, newest};
+use super::adaptive_resolution::AdaptiveResolution;
+use super::latest::{LatestReceiver, LatestSender, latest};
 use crate::edit::Changes;
-use crate::frame::Stage;
+use crate::frame::DecidedBy;
 use crate::gpu::GpuError;
 use crate::gpu::canvas::{Canvas, Scatter};
 use crate::gpu::device::Gpu;
@@ -41,7 +41,7 @@ pub(super) struct Wish {
 
 /// A picture on the GPU, with what is known of it.
 #[derive(Debug)]
-pub(super) struct Picture {
+pub(super) struct PreviewPicture {
     /// The number of its wish.
     pub(super) number: u64,
     /// The scene that it shows, changes and all; its pixeldim is the size that is shown.
@@ -53,7 +53,7 @@ pub(super) struct Picture {
     /// Its bytes, rows from the top.
     pub(super) rgb: Vec<u8>,
     /// What decided its pixels, in the same order.
-    pub(super) stages: Vec<Stage>,
+    pub(super) verdicts: Vec<DecidedBy>,
     /// Whether its bytes are certified.
     pub(super) precision: Precision,
     /// How it was rendered.
@@ -66,7 +66,7 @@ pub(super) struct Picture {
 #[derive(Debug)]
 pub(super) enum News {
     /// A picture is there.
-    Picture(Box<Picture>),
+    Picture(Box<PreviewPicture>),
     /// A wish cannot be fulfilled.
     Failed {
         /// The number of the wish.
@@ -99,7 +99,7 @@ impl Progress {
 #[derive(Debug)]
 pub(super) struct Worker {
     /// Where wishes are left, by whoever has them.
-    pub(super) wishes: Arc<Newest<Wish>>,
+    pub(super) wishes: Arc<LatestSender<Wish>>,
     thread: Option<JoinHandle<()>>,
     /// How far the picture under way is.
     pub(super) progress: Arc<Progress>,
@@ -116,16 +116,16 @@ impl Worker {
         settings: Settings,
         tell: impl FnMut(News) + Send + 'static,
     ) -> std::io::Result<Self> {
-        let (wishes, taker) = newest();
+        let (wishes, receiver) = latest();
         let progress = Arc::new(Progress::default());
         progress.set(1000);
         let work = Work {
             gpu,
             scatter,
             settings,
-            taker,
+            receiver,
             progress: Arc::clone(&progress),
-            ladder: Ladder::default(),
+            resolution: AdaptiveResolution::default(),
             compiled: Compiled::default(),
             canvases: Vec::new(),
         };
@@ -155,16 +155,16 @@ struct Work {
     gpu: Arc<Gpu>,
     scatter: Scatter,
     settings: Settings,
-    taker: Taker<Wish>,
+    receiver: LatestReceiver<Wish>,
     progress: Arc<Progress>,
-    ladder: Ladder,
+    resolution: AdaptiveResolution,
     compiled: Compiled,
     /// Canvases to be used again once nobody shows them.
     canvases: Vec<Arc<Canvas>>,
 }
 
 /// A wish that is being worked on.
-struct Job {
+struct PreviewTask {
     number: u64,
     /// The scene, its picture no larger than can be shown.
     scene: Arc<Scene>,
@@ -181,7 +181,7 @@ enum Unmade {
 
 impl Work {
     fn run(mut self, mut tell: impl FnMut(News)) {
-        while let Some((number, wish)) = self.taker.take() {
+        while let Some((number, wish)) = self.receiver.take() {
             if let Err(Unmade::Failed(why)) = self.fulfil(number, &wish, &mut tell) {
                 tell(News::Failed { number, why });
             }
@@ -202,49 +202,49 @@ impl Work {
         };
         let most = MOST.min(Canvas::most(&self.gpu));
         let whole = scene.camera.pixeldim;
-        let job = Job {
+        let task = PreviewTask {
             number,
             scene: sized(&scene, smaller(whole, most)).map_or(scene, Arc::new),
             whole,
         };
-        let mut first = self.ladder.first();
-        let patience = self.ladder.patience();
+        let mut first = self.resolution.first();
+        let patience = self.resolution.patience();
         loop {
             let started = Instant::now();
             let patience = patience.filter(|_| first == 1);
-            let made = self.make(&job, first, Precision::Fast, |old| {
+            let made = self.make(&task, first, Precision::Fast, |old| {
                 let seconds = started.elapsed().as_secs_f64();
                 patience.is_some_and(|most| seconds > most) || old && seconds > FIRST
             });
             let seconds = started.elapsed().as_secs_f64();
             match made {
                 Ok(picture) => {
-                    self.ladder.took(first, seconds);
+                    self.resolution.took(first, seconds);
                     tell(done(picture, wish.since.elapsed()));
                     break;
                 }
                 Err(Unmade::GivenUp(share)) if first == 1 => {
-                    self.ladder.gave_up(seconds, share);
-                    if self.taker.is_old(number) {
+                    self.resolution.gave_up(seconds, share);
+                    if self.receiver.is_old(number) {
                         return Ok(());
                     }
-                    first = self.ladder.first();
+                    first = self.resolution.first();
                 }
                 Err(unmade) => return Err(unmade),
             }
         }
         if first > 1 {
             let started = Instant::now();
-            let picture = self.make(&job, 1, Precision::Fast, |old| old)?;
-            self.ladder.took(1, started.elapsed().as_secs_f64());
+            let picture = self.make(&task, 1, Precision::Fast, |old| old)?;
+            self.resolution.took(1, started.elapsed().as_secs_f64());
             tell(done(picture, wish.since.elapsed()));
         }
         self.progress.set(1000);
-        if !self.taker.rest(number, wish.since + STILL) {
+        if !self.receiver.rest(number, wish.since + STILL) {
             return Ok(());
         }
         let started = Instant::now();
-        let picture = self.make(&job, 1, Precision::Certified, |old| old)?;
+        let picture = self.make(&task, 1, Precision::Certified, |old| old)?;
         tell(done(picture, started.elapsed()));
         Ok(())
     }
@@ -252,13 +252,13 @@ impl Work {
     /// Renders a picture, `smaller` times smaller in each direction; `stop` is told whether the wish is old.
     fn make(
         &mut self,
-        job: &Job,
+        task: &PreviewTask,
         smaller: u32,
         precision: Precision,
         stop: impl Fn(bool) -> bool + Sync,
-    ) -> Result<Picture, Unmade> {
-        let small = sized(&job.scene, smaller);
-        let scene = small.as_ref().unwrap_or(&job.scene);
+    ) -> Result<PreviewPicture, Unmade> {
+        let small = sized(&task.scene, smaller);
+        let scene = small.as_ref().unwrap_or(&task.scene);
         let [width, height] = scene.camera.pixeldim;
         let canvas = self.canvas([width, height])?;
         let mut settings = Settings {
@@ -267,7 +267,7 @@ impl Work {
             verdicts: true,
             ..self.settings.clone()
         };
-        let stop = || stop(self.taker.is_old(job.number));
+        let stop = || stop(self.receiver.is_old(task.number));
         let live = Live {
             gpu: &self.gpu,
             canvas: Some(&canvas),
@@ -278,7 +278,7 @@ impl Work {
         loop {
             let pixels = width as usize * height as usize;
             let mut rgb = Vec::with_capacity(3 * pixels);
-            let mut stages = Vec::with_capacity(pixels);
+            let mut verdicts = Vec::with_capacity(pixels);
             let mut trouble = None;
             let rendered = render_live(scene, &settings, &live, &mut |band| {
                 if let Err(error) = self.scatter.put(&self.gpu, &canvas, band) {
@@ -286,25 +286,25 @@ impl Work {
                     return Err(std::io::Error::other("the GPU's fault"));
                 }
                 rgb.extend_from_slice(&band.rgb);
-                stages.extend(band.verdicts.iter().flatten());
+                verdicts.extend(band.verdicts.iter().flatten());
                 let done = u64::from(height - band.rows.start) * 999 / u64::from(height);
                 self.progress.set(done as u32);
                 Ok(())
             });
             return match (rendered, trouble) {
-                (Ok(report), _) => Ok(Picture {
-                    number: job.number,
-                    scene: Arc::clone(&job.scene),
-                    whole: job.whole,
+                (Ok(report), _) => Ok(PreviewPicture {
+                    number: task.number,
+                    scene: Arc::clone(&task.scene),
+                    whole: task.whole,
                     canvas,
                     rgb,
-                    stages,
+                    verdicts,
                     precision,
                     report,
                     seconds: 0.0,
                 }),
                 (Err(render::Error::Stopped), _) => {
-                    Err(Unmade::GivenUp(stages.len() as f64 / pixels as f64))
+                    Err(Unmade::GivenUp(verdicts.len() as f64 / pixels as f64))
                 }
                 // Rows that were handed on are wrong: all of it again, by the CPU.
                 (Err(render::Error::Revoked(_)), _) if settings.backend == Backend::Auto => {
@@ -338,8 +338,8 @@ impl From<GpuError> for Unmade {
     }
 }
 
-fn done(picture: Picture, took: Duration) -> News {
-    News::Picture(Box::new(Picture {
+fn done(picture: PreviewPicture, took: Duration) -> News {
+    News::Picture(Box::new(PreviewPicture {
         seconds: took.as_secs_f64(),
         ..picture
     }))

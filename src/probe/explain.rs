@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use super::digits::{components, line, short, short_triple, triple};
-use super::sight::Sight;
+use super::primary_ray::PrimaryRay;
 use super::tree::Tree;
 use super::{AskGpu, Ended, Options, Probe, Unexplained};
 use crate::certify::verdict::meaning;
 use crate::cpu::camera::camera_setpix;
-use crate::cpu::trace::{Fault, Limits, Traced, Unwatched, ray_trace};
+use crate::cpu::trace::{Fault, Limits, Traced, Unobserved, ray_trace};
 use crate::frame::PixelFault;
 use crate::gpu::single::Single;
 use crate::jitter::{self, Sampling};
@@ -38,7 +38,7 @@ pub(super) fn write(
 ) -> Ended {
     let pixel = Pixel {
         probe,
-        prepared: probe.stages.plain(),
+        prepared: probe.exact_tracer.plain(),
         options,
         x,
         y,
@@ -86,7 +86,7 @@ impl Pixel<'_, '_> {
             )?;
         }
         // As rendering has them, whatever it does to be sure of them.
-        let decided = match probe.stages.trace(&probe.limits, sampling, x, y) {
+        let decided = match probe.exact_tracer.trace(&probe.limits, sampling, x, y) {
             Ok(decided) => decided,
             Err(_) => return Ok(Err(Fault::TooManyRays)),
         };
@@ -98,12 +98,14 @@ impl Pixel<'_, '_> {
             Err(Undecided) => " (f64 alone cannot tell)".to_owned(),
         };
         line(to, "bytes", format!("{r} {g} {b}{doubt}"))?;
-        line(to, "decided by", meaning(decided.stage).to_owned())?;
-        let rough = probe.stages.rough(&probe.limits, sampling, x, y);
+        line(to, "decided by", meaning(decided.by).to_owned())?;
+        let enclosure = probe
+            .exact_tracer
+            .pixel_enclosure(&probe.limits, sampling, x, y);
         line(
             to,
             "f64",
-            rough.map_or_else(
+            enclosure.map_or_else(
                 || "leaves open what the rays meet".to_owned(),
                 |v| within(v.map(|c| 255.0 * c.value), v.map(|c| 255.0 * c.error)),
             ),
@@ -195,7 +197,7 @@ impl Pixel<'_, '_> {
     /// Traces the sample that is so far from the middle of the pixel.
     fn trace(&self, [a, b]: [f64; 2]) -> Result<Traced<f64>, Fault> {
         let (x, y) = (f64::from(self.x) + a, f64::from(self.y) + b);
-        ray_trace(self.prepared, &self.probe.limits, x, y, &mut Unwatched)
+        ray_trace(self.prepared, &self.probe.limits, x, y, &mut Unobserved)
     }
 
     /// Shows all about one sample, and returns its colour.
@@ -206,23 +208,23 @@ impl Pixel<'_, '_> {
         } = *self;
         let (scene, limits, all) = (probe.scene, &probe.limits, self.options.all);
         let tolerance = probe.settings.screen_tolerance;
-        let sight = Sight::new(scene, prepared, tolerance, [x, y]);
-        sight.ray(to)?;
+        let primary_ray = PrimaryRay::new(scene, prepared, tolerance, [x, y]);
+        primary_ray.ray(to)?;
         // The primary ray is traced once for what it hits, and once more for the tree, whose rays may be too many.
         let first = Limits {
             max_path: 0.0,
             ..*limits
         };
-        let traced = match ray_trace(prepared, &first, x, y, &mut Unwatched) {
+        let traced = match ray_trace(prepared, &first, x, y, &mut Unobserved) {
             Ok(traced) => traced,
             Err(fault) => return Ok(Err(fault)),
         };
-        let objects = match sight.objects(&traced, all) {
+        let objects = match primary_ray.objects(&traced, all) {
             Ok(text) => text,
             Err(undecided) => return Ok(Err(undecided.into())),
         };
         to.write_all(objects.as_bytes())?;
-        sight.closest(&traced, to)?;
+        primary_ray.closest(&traced, to)?;
         if prepared.world.is_none() || traced.hit.is_none() {
             return Ok(Ok(traced.color));
         }

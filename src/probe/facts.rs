@@ -1,8 +1,8 @@
 //! The outcome of a pixel alone: for `plumb probe --json`, and for whoever asks for one pixel after the other.
 
-use super::sight::direction;
+use super::primary_ray::direction;
 use super::why::ExactRay;
-use super::{AskGpu, Probe, Unexplained, Verdict};
+use super::{AskGpu, GpuVerdict, Probe, Unexplained};
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::pixel::FirstHit;
 use crate::frame::{Decided, PixelFault};
@@ -25,9 +25,9 @@ pub struct Facts {
     /// The value before quantising, the certified bytes and what decided them; or that a sample needs too many rays.
     pub decided: Result<Decided, PixelFault>,
     /// The value in f64, and how far off that may be: what the CPU tries first. None where it leaves open what the rays meet.
-    pub rough: Option<[Bounded; 3]>,
+    pub enclosure: Option<[Bounded; 3]>,
     /// Whether the GPU is sure of the bytes, if it was asked.
-    pub verdict: Option<Verdict>,
+    pub verdict: Option<GpuVerdict>,
     /// 255 times the value in the GPU's f32, and how far off that may be, if it was asked, and has a value: it has none of
     /// several samples.
     pub single: Option<Single>,
@@ -43,8 +43,8 @@ impl Probe<'_> {
         let row = self.row(y);
         let sampling = self.sampling(row.as_deref(), x);
         let middle = [f64::from(x), f64::from(y)];
-        let ray = camera_getdir(&self.stages.bounded().camera, middle[0], middle[1]);
-        let decided = self.stages.trace(&self.limits, sampling, x, y);
+        let ray = camera_getdir(&self.exact_tracer.bounded().camera, middle[0], middle[1]);
+        let decided = self.exact_tracer.trace(&self.limits, sampling, x, y);
         let ask = if decided.is_ok() {
             ask
         } else {
@@ -55,9 +55,11 @@ impl Probe<'_> {
             viewpoint: self.scene.camera.viewpoint.to_array(),
             world_point: ExactRay::new(&self.scene.camera, middle[0], middle[1]).world_point(),
             direction: direction(&ray),
-            hit: self.stages.first_hit(middle),
+            hit: self.exact_tracer.first_hit(middle),
             decided,
-            rough: self.stages.rough(&self.limits, sampling, x, y),
+            enclosure: self
+                .exact_tracer
+                .pixel_enclosure(&self.limits, sampling, x, y),
             verdict: (ask == AskGpu::ValueAndVerdict).then(|| self.verdict(x, y)),
             single: (ask != AskGpu::Nothing)
                 .then(|| self.single(x, y))

@@ -2,7 +2,7 @@
 //! of the preview.
 //!
 //! Stands beside the flow: it renders nothing, and takes what it tells from the tracers. A [`Probe`] is made once for a
-//! scene and asked for many pixels: [`Probe::write`] explains one at length (`sight` the ray from the viewpoint and what
+//! scene and asked for many pixels: [`Probe::write`] explains one at length (`primary_ray` the ray from the viewpoint and what
 //! every object answered, with `why` in exact arithmetic; `tree` the rays and lights; `verdict` what the GPU says),
 //! [`Probe::facts`] tells the outcome alone.
 //!
@@ -12,7 +12,7 @@
 pub mod digits;
 mod explain;
 mod facts;
-mod sight;
+mod primary_ray;
 mod tree;
 mod verdict;
 mod why;
@@ -23,7 +23,7 @@ mod tests;
 use std::cell::{OnceCell, RefCell};
 use std::io::{self, Write};
 
-use crate::cpu::pixel::Stages;
+use crate::cpu::pixel::ExactTracer;
 use crate::cpu::trace::Limits;
 use crate::frame::PixelFault;
 use crate::gpu::GpuError;
@@ -35,7 +35,7 @@ use crate::settings::Settings;
 use crate::shader::pack::Packed;
 
 pub use facts::Facts;
-pub use verdict::Verdict;
+pub use verdict::GpuVerdict;
 
 /// What is shown of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -98,7 +98,7 @@ pub struct Probe<'a> {
     settings: Settings,
     limits: Limits,
     gpu: Result<&'a Gpu, &'a GpuError>,
-    stages: Stages<'a>,
+    exact_tracer: ExactTracer<'a>,
     jitter: RefCell<Rows>,
     single: OnceCell<Option<SinglePipeline>>,
 }
@@ -119,7 +119,7 @@ impl<'a> Probe<'a> {
             limits: settings.sample_limits(),
             settings: settings.clone(),
             gpu,
-            stages: Stages::new(scene, settings.view()),
+            exact_tracer: ExactTracer::new(scene, settings.view()),
             jitter: RefCell::new(Rows {
                 jitter: settings.sampling(scene.camera.pixeldim[0], 0),
                 end: 0,
@@ -176,7 +176,7 @@ impl<'a> Probe<'a> {
     }
 
     /// Whether the GPU is sure of pixel (x, y).
-    fn verdict(&self, x: u32, y: u32) -> Verdict {
+    fn verdict(&self, x: u32, y: u32) -> GpuVerdict {
         verdict::ask(self.scene, &self.settings, self.gpu, x, y)
     }
 
@@ -188,7 +188,7 @@ impl<'a> Probe<'a> {
             if self.settings.supersampling().is_some() {
                 return None;
             }
-            let packed = Packed::prepared(self.stages.bounded(), self.scene, &self.settings);
+            let packed = Packed::prepared(self.exact_tracer.bounded(), self.scene, &self.settings);
             if packed.unprovable.is_some() {
                 return None;
             }

@@ -6,10 +6,10 @@ use std::thread;
 
 use super::why::{self, ExactRay};
 use super::*;
-use crate::frame::Stage;
+use crate::frame::DecidedBy;
 use crate::gpu::adapters;
 use crate::scene;
-use crate::settings::Spread;
+use crate::settings::SamplePattern;
 
 fn load(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -81,9 +81,9 @@ fn facts_are_those_found_by_hand() {
         let decided = facts.decided.unwrap();
         assert_eq!(decided.bytes, bytes);
         near(decided.value.map(f64::from), value, 1e-7);
-        let rough = facts.rough.map(|v| v.map(|c| c.value));
-        if decided.stage == Stage::Bounded {
-            near(rough.unwrap(), value, 1e-14);
+        let enclosure = facts.enclosure.map(|v| v.map(|c| c.value));
+        if decided.by == DecidedBy::Bounded {
+            near(enclosure.unwrap(), value, 1e-14);
         }
         let single = facts.single.unwrap();
         for ((value, single), error) in value.iter().zip(single.value).zip(single.error) {
@@ -92,8 +92,8 @@ fn facts_are_those_found_by_hand() {
             assert!(error < 1e-2, "{single} ± {error}");
         }
         match facts.verdict {
-            Some(Verdict::Sure(sure)) => assert_eq!(sure, bytes),
-            verdict => assert_eq!(verdict, Some(Verdict::Doubtful)),
+            Some(GpuVerdict::Sure(sure)) => assert_eq!(sure, bytes),
+            verdict => assert_eq!(verdict, Some(GpuVerdict::Doubtful)),
         }
     }
     // What is not asked for is not there.
@@ -114,7 +114,7 @@ fn there_are_no_facts_of_pixels_that_are_not_there() {
         assert_eq!(ended.unwrap(), Err(outside));
     }
     let facts = probe.facts([0, 0], AskGpu::ValueAndVerdict).unwrap();
-    let why = Verdict::Unknown("no GPU adapter found".into());
+    let why = GpuVerdict::Unknown("no GPU adapter found".into());
     assert_eq!((facts.verdict, facts.single), (Some(why), None));
 }
 
@@ -156,9 +156,9 @@ fn hits_are_exact() {
         let [width, height] = scene.camera.pixeldim;
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             let [px, py] = [x, y].map(f64::from);
-            let hit = probe.stages.first_hit([px, py]).unwrap();
+            let hit = probe.exact_tracer.first_hit([px, py]).unwrap();
             let ray = ExactRay::new(&scene.camera, px, py);
-            let is_hit = |object| ray.ask(&scene, object, 0.0) == why::Verdict::Hit;
+            let is_hit = |object| ray.ask(&scene, object, 0.0) == why::HitOrMiss::Hit;
             match hit {
                 Some(hit) => {
                     assert!(is_hit(hit.object), "{name} ({x}, {y}): {hit:?}");
@@ -172,12 +172,12 @@ fn hits_are_exact() {
                 }
                 None => assert!(!(0..scene.objects.len()).any(is_hit), "{name} ({x}, {y})"),
             }
-            let rough = crate::cpu::trace::find_closest_object(
-                probe.stages.plain(),
-                &crate::cpu::camera::camera_getdir(&probe.stages.plain().camera, px, py),
+            let plain = crate::cpu::trace::find_closest_object(
+                probe.exact_tracer.plain(),
+                &crate::cpu::camera::camera_getdir(&probe.exact_tracer.plain().camera, px, py),
             );
-            let rough = rough.unwrap().map(|hit| hit.object);
-            wrong += usize::from(rough != hit.map(|hit| hit.object));
+            let plain = plain.unwrap().map(|hit| hit.object);
+            wrong += usize::from(plain != hit.map(|hit| hit.object));
         }
     }
     // Otherwise f64 would have done, and the test shows nothing.
@@ -190,10 +190,10 @@ fn a_probe_says_the_same_whatever_it_was_asked_before() {
     let gpu = adapters::open(None).unwrap();
     let pixels = [[3, 5], [60, 40], [0, 0], [3, 6], [79, 59], [40, 30], [3, 5]];
     for (name, samples, jitter) in [
-        ("notes/walls.txt", 1, Spread::Hash),
-        ("notes/walls.txt", 3, Spread::Course),
-        ("gallery/spheres_over_tiles.txt", 4, Spread::Hash),
-        ("lit/glass_balls.txt", 1, Spread::Hash),
+        ("notes/walls.txt", 1, SamplePattern::Hash),
+        ("notes/walls.txt", 3, SamplePattern::Course),
+        ("gallery/spheres_over_tiles.txt", 4, SamplePattern::Hash),
+        ("lit/glass_balls.txt", 1, SamplePattern::Hash),
     ] {
         let mut scene = load(name);
         scene.camera.pixeldim = [80, 60];

@@ -1,12 +1,12 @@
 //! The rays of a sample as a tree: how `plumb probe` shows where a colour comes from.
 //!
-//! A [`Watch`] that writes as the tracer goes: a tree of any size takes no memory but for the rays above the one at hand.
+//! A [`TraceObserver`] that writes as the tracer goes: a tree of any size takes no memory but for the rays above the one at hand.
 
 use std::io::{self, Write};
 
 use crate::cpu::light::Lit;
 use crate::cpu::surface::{Point, texel_place, tile_material};
-use crate::cpu::trace::{Branch, RayKind, Unmet, Watch};
+use crate::cpu::trace::{Branch, RayKind, TraceObserver, Unmet};
 use crate::prepare::{Prepared, Surface};
 use crate::real::V3;
 use crate::real::rational::two_to;
@@ -194,7 +194,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-impl Watch<f64> for Tree<'_> {
+impl TraceObserver<f64> for Tree<'_> {
     fn met(
         &mut self,
         number: u32,
@@ -211,7 +211,7 @@ impl Watch<f64> for Tree<'_> {
             return;
         }
         let object = &self.scene.objects[point.object];
-        let from_viewpoint = point.position.approx() * two_to(self.prepared.camera.scale);
+        let from_viewpoint = point.position.to_f64() * two_to(self.prepared.camera.scale);
         let at = self.scene.camera.viewpoint + from_viewpoint;
         let met = format!(
             "{} ({}) at {}, t = {}",
@@ -286,14 +286,14 @@ impl Watch<f64> for Tree<'_> {
             Lit::Lit {
                 diffuse,
                 glint,
-                filter,
+                transmittance,
             } => {
                 let mut text = format!("diffuse {}", short_triple(components(*diffuse)));
                 if components(*glint) != [0.0; 3] {
                     text += &format!(", glint {}", short_triple(components(*glint)));
                 }
-                if components(*filter) != [1.0; 3] {
-                    text += &format!(", filter {}", short_triple(components(*filter)));
+                if components(*transmittance) != [1.0; 3] {
+                    text += &format!(", filter {}", short_triple(components(*transmittance)));
                 }
                 text
             }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::certify::Stage;
+use crate::certify::DecidedBy;
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::render::{Backend, Live, Precision, Report, Settings, render_live};
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 
 /// What the GPU says of a pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum GpuVerdict {
     /// It is sure of these bytes.
     Sure([u8; 3]),
     /// It leaves the pixel to the CPU.
@@ -19,7 +19,7 @@ pub enum Verdict {
     Unknown(String),
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for GpuVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Sure([r, g, b]) => write!(f, "sure: {r} {g} {b}"),
@@ -36,10 +36,10 @@ pub(super) fn ask(
     gpu: Result<&Gpu, &GpuError>,
     x: u32,
     y: u32,
-) -> Verdict {
+) -> GpuVerdict {
     let live = match gpu {
         Ok(gpu) => Live::on(gpu),
-        Err(error) => return Verdict::Unknown(error.to_string()),
+        Err(error) => return GpuVerdict::Unknown(error.to_string()),
     };
     let settings = Settings {
         rows: Some(y..y + 1),
@@ -52,18 +52,18 @@ pub(super) fn ask(
     let x = x as usize;
     let mut verdict = None;
     let rendered = render_live(scene, &settings, &live, &mut |band| {
-        let stage = band.verdicts.as_ref().and_then(|stages| stages.get(x));
+        let by = band.verdicts.as_ref().and_then(|verdicts| verdicts.get(x));
         let bytes = band.rgb.as_chunks::<3>().0.get(x);
-        verdict = stage.copied().zip(bytes.copied());
+        verdict = by.copied().zip(bytes.copied());
         Ok(())
     });
     let revoked = match rendered {
-        Err(error) => return Verdict::Unknown(error.to_string()),
+        Err(error) => return GpuVerdict::Unknown(error.to_string()),
         Ok(Report { revoked, .. }) => revoked,
     };
     match (revoked, verdict) {
-        (Some(revoked), _) => Verdict::Unknown(format!("not trusted: {revoked}")),
-        (None, Some((Stage::Gpu, bytes))) => Verdict::Sure(bytes),
-        (None, _) => Verdict::Doubtful,
+        (Some(revoked), _) => GpuVerdict::Unknown(format!("not trusted: {revoked}")),
+        (None, Some((DecidedBy::Gpu, bytes))) => GpuVerdict::Sure(bytes),
+        (None, _) => GpuVerdict::Doubtful,
     }
 }

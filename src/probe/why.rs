@@ -20,7 +20,7 @@ pub(super) struct ExactRay {
 
 /// What an object answers, exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum HitOrMiss {
     /// It is hit.
     Hit,
     /// It is not.
@@ -97,7 +97,7 @@ impl ExactRay {
     }
 
     /// What the object of this number answers, under the screen tolerance τ.
-    pub(super) fn ask(&self, scene: &Scene, object: usize, screen_tolerance: f64) -> Verdict {
+    pub(super) fn ask(&self, scene: &Scene, object: usize, screen_tolerance: f64) -> HitOrMiss {
         match scene.objects[object].shape {
             Shape::Plane {
                 normal,
@@ -117,48 +117,48 @@ impl ExactRay {
         point: &[Ratio; 3],
         extent: &Extent,
         screen_tolerance: f64,
-    ) -> Verdict {
+    ) -> HitOrMiss {
         let along = dot(normal, &self.w);
         let ahead = dot(normal, &sub(point, &self.viewpoint));
         if is_zero(&along) {
-            return Verdict::Miss(Reason::Parallel);
+            return HitOrMiss::Miss(Reason::Parallel);
         }
         let s = ahead / along;
         if is_zero(&s) {
-            return Verdict::Miss(Reason::ThroughViewpoint);
+            return HitOrMiss::Miss(Reason::ThroughViewpoint);
         }
         if !is_positive(&s) {
-            return Verdict::Miss(Reason::Behind);
+            return HitOrMiss::Miss(Reason::Behind);
         }
         let hit = [0, 1, 2].map(|i| &self.viewpoint[i] + &self.w[i] * &s);
         if hit[2] > ratio(screen_tolerance) {
-            return Verdict::Miss(Reason::BeforeScreen(hit[2].to_f64().value()));
+            return HitOrMiss::Miss(Reason::BeforeScreen(hit[2].to_f64().value()));
         }
         let outside = match extent {
             Extent::Unbounded => None,
             Extent::Rectangle(rectangle) => outside(rectangle, normal, &sub(&hit, point)),
         };
-        outside.map_or(Verdict::Hit, Verdict::Miss)
+        outside.map_or(HitOrMiss::Hit, HitOrMiss::Miss)
     }
 
-    fn sphere(&self, center: &[Ratio; 3], radius: &Ratio) -> Verdict {
+    fn sphere(&self, center: &[Ratio; 3], radius: &Ratio) -> HitOrMiss {
         let c = sub(center, &self.viewpoint);
         let power = dot(&c, &c) - radius * radius;
         if !is_positive(&power) {
-            return Verdict::Miss(Reason::Inside);
+            return HitOrMiss::Miss(Reason::Inside);
         }
         let along = dot(&c, &self.w);
         let discriminant = &along * &along - dot(&self.w, &self.w) * power;
         if is_zero(&discriminant) {
-            return Verdict::Miss(Reason::Tangent);
+            return HitOrMiss::Miss(Reason::Tangent);
         }
         if !is_positive(&discriminant) {
-            return Verdict::Miss(Reason::Passes);
+            return HitOrMiss::Miss(Reason::Passes);
         }
         if is_positive(&along) {
-            Verdict::Hit
+            HitOrMiss::Hit
         } else {
-            Verdict::Miss(Reason::Behind)
+            HitOrMiss::Miss(Reason::Behind)
         }
     }
 }
@@ -190,7 +190,7 @@ mod tests {
     use super::*;
 
     /// The answers of all objects to the middle pixel of a 3 × 3 picture, whose ray runs from (1, 1, 2) along −z.
-    fn answers(objects: &str, screen_tolerance: f64) -> Vec<Verdict> {
+    fn answers(objects: &str, screen_tolerance: f64) -> Vec<HitOrMiss> {
         let text = format!(
             "camera c {{ pixeldim 3 3 worlddim 2 2 viewpoint 1 1 2 }} material m {{ ambient 1 1 1 }} {objects}"
         );
@@ -214,15 +214,15 @@ mod tests {
             plane("normal 0 0 1 point 0 0 0"),
         ];
         let expected = [
-            Verdict::Hit,
-            Verdict::Miss(Reason::Parallel),
-            Verdict::Miss(Reason::ThroughViewpoint),
-            Verdict::Miss(Reason::Behind),
-            Verdict::Miss(Reason::BeforeScreen(0.5)),
-            Verdict::Hit,
+            HitOrMiss::Hit,
+            HitOrMiss::Miss(Reason::Parallel),
+            HitOrMiss::Miss(Reason::ThroughViewpoint),
+            HitOrMiss::Miss(Reason::Behind),
+            HitOrMiss::Miss(Reason::BeforeScreen(0.5)),
+            HitOrMiss::Hit,
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
-        assert_eq!(answers(&objects.join(" "), 0.5)[4], Verdict::Hit);
+        assert_eq!(answers(&objects.join(" "), 0.5)[4], HitOrMiss::Hit);
     }
 
     #[test]
@@ -238,14 +238,14 @@ mod tests {
             rectangle("point 0 0 -3 xdir 1 1 0 dimensions 1.4142135623730951 1"),
             rectangle("point 0 0 -3 xdir 1 1 0 dimensions 1.414213562373095 1"),
         ];
-        let outside = |side, at, length| Verdict::Miss(Reason::Outside { side, at, length });
+        let outside = |side, at, length| HitOrMiss::Miss(Reason::Outside { side, at, length });
         let root = std::f64::consts::SQRT_2;
         let expected = [
-            Verdict::Hit,
+            HitOrMiss::Hit,
             outside(0, 1.0, 0.75),
             outside(1, 1.0, 0.999_999_999_999_999_9),
             outside(1, -1.0, 1.0),
-            Verdict::Hit,
+            HitOrMiss::Hit,
             outside(0, 98.0 / 4802.0_f64.sqrt(), root.next_down()),
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
@@ -262,11 +262,11 @@ mod tests {
             sphere("center 1 1 1 radius 4"),
         ];
         let expected = [
-            Verdict::Hit,
-            Verdict::Miss(Reason::Tangent),
-            Verdict::Miss(Reason::Passes),
-            Verdict::Miss(Reason::Behind),
-            Verdict::Miss(Reason::Inside),
+            HitOrMiss::Hit,
+            HitOrMiss::Miss(Reason::Tangent),
+            HitOrMiss::Miss(Reason::Passes),
+            HitOrMiss::Miss(Reason::Behind),
+            HitOrMiss::Miss(Reason::Inside),
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
     }

@@ -10,7 +10,7 @@ use crate::real::{Real, Undecided, V3};
 pub(super) fn color_wheel<R: Real>(x: R, y: R) -> Result<V3<R>, Undecided> {
     // The larger component becomes 1, so that squares neither overflow nor vanish. Any that is not 0 would do: it is divided
     // out again, its sign too.
-    let (larger, smaller) = if x.approx().abs() >= y.approx().abs() {
+    let (larger, smaller) = if x.to_f64().abs() >= y.to_f64().abs() {
         (x, y)
     } else {
         (y, x)

@@ -177,11 +177,11 @@ impl Real for Bounded {
     }
 
     fn ratio(value: &Ratio) -> Self {
-        let near = f64::ratio(value);
-        let exact = near.is_finite() && ratio(near) == *value;
+        let rounded = f64::ratio(value);
+        let exact = rounded.is_finite() && ratio(rounded) == *value;
         Self {
-            value: near,
-            error: if exact { 0.0 } else { U * near.abs() + TINY },
+            value: rounded,
+            error: if exact { 0.0 } else { U * rounded.abs() + TINY },
         }
     }
 
@@ -271,12 +271,12 @@ impl Real for Bounded {
     }
 
     #[inline(always)]
-    fn approx(self) -> f64 {
+    fn to_f64(self) -> f64 {
         self.value
     }
 
     #[inline(always)]
-    fn near(self) -> Self {
+    fn enclosure(self) -> Self {
         self
     }
 

@@ -47,7 +47,7 @@ impl Real for f64 {
     }
 
     #[inline]
-    fn approx(self) -> f64 {
+    fn to_f64(self) -> f64 {
         self
     }
 

@@ -76,16 +76,16 @@ pub trait Real:
     }
 
     /// An f64 near the number: for people to read, and where any number near it will do.
-    fn approx(self) -> f64;
+    fn to_f64(self) -> f64;
 
     /// An f64 near the number, and how far off it may be.
-    fn near(self) -> Bounded {
-        Bounded::exact(self.approx())
+    fn enclosure(self) -> Bounded {
+        Bounded::exact(self.to_f64())
     }
 
     /// The same, as it is known without any work.
-    fn rough(self) -> Bounded {
-        self.near()
+    fn quick_enclosure(self) -> Bounded {
+        self.enclosure()
     }
 
     /// The f32 nearest to the number, of two the even one, if it is certain.

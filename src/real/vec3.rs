@@ -71,8 +71,8 @@ impl<R: Real> V3<R> {
     }
 
     /// f64 values near the components.
-    pub fn approx(self) -> glam::DVec3 {
-        glam::DVec3::new(self.x.approx(), self.y.approx(), self.z.approx())
+    pub fn to_f64(self) -> glam::DVec3 {
+        glam::DVec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
     }
 }
 

@@ -6,15 +6,15 @@ use std::time::Instant;
 
 use super::report::{Beside, Done};
 use super::{Backend, Emit, Error, Settings};
-use crate::certify::pixels::Tracer;
+use crate::certify::pixels::PixelDecider;
 use crate::certify::spot::spots;
-use crate::certify::{Stage, Tally};
+use crate::certify::{DecidedBy, Tally};
 use crate::frame::Band;
 use crate::gpu::bands::{Partials, Rendered};
 
 /// Takes bands from the GPU, one after the other.
 pub(super) struct Finish<'a, 's, 'e> {
-    tracer: &'a Tracer<'s>,
+    decider: &'a PixelDecider<'s>,
     emit: &'a mut Emit<'e>,
     /// Whether sure pixels are checked.
     certified: bool,
@@ -33,14 +33,14 @@ pub(super) struct Finish<'a, 's, 'e> {
 
 /// Why no more bands are taken.
 #[derive(Debug)]
-pub(super) enum Stop {
+pub(super) enum FinishError {
     /// As any rendering may fail.
     Error(Error),
     /// A pixel that the GPU was sure of is wrong.
     Wrong(Wrong),
 }
 
-impl<E: Into<Error>> From<E> for Stop {
+impl<E: Into<Error>> From<E> for FinishError {
     fn from(error: E) -> Self {
         Self::Error(error.into())
     }
@@ -81,9 +81,13 @@ impl Digest {
 }
 
 impl<'a, 's, 'e> Finish<'a, 's, 'e> {
-    pub(super) fn new(tracer: &'a Tracer<'s>, emit: &'a mut Emit<'e>, settings: &Settings) -> Self {
+    pub(super) fn new(
+        decider: &'a PixelDecider<'s>,
+        emit: &'a mut Emit<'e>,
+        settings: &Settings,
+    ) -> Self {
         Self {
-            tracer,
+            decider,
             emit,
             certified: settings.has_gpu_bounds(),
             verdicts: settings.verdicts,
@@ -107,7 +111,7 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
     }
 
     /// Finishes a band and hands it on; not before its sure pixels were checked.
-    pub(super) fn band(&mut self, rendered: Rendered) -> Result<(), Stop> {
+    pub(super) fn band(&mut self, rendered: Rendered) -> Result<(), FinishError> {
         let start = Instant::now();
         let (mut band, alone) = self.refine(rendered)?;
         self.beside.refine += start.elapsed().as_secs_f64();
@@ -127,7 +131,7 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
     }
 
     /// Decides the doubtful pixels. Returns the places of those of them of which the GPU has no part.
-    fn refine(&mut self, rendered: Rendered) -> Result<(Band, Vec<u32>), Stop> {
+    fn refine(&mut self, rendered: Rendered) -> Result<(Band, Vec<u32>), FinishError> {
         let Rendered {
             mut band,
             doubtful,
@@ -135,10 +139,10 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
         } = rendered;
         let pixels = band.rgb.len() / 3;
         let (decided, tally) = self
-            .tracer
+            .decider
             .pixels(band.rows.end - 1, &doubtful, &partials)?;
         if self.verdicts {
-            band.verdicts = Some(vec![Stage::Gpu; pixels]);
+            band.verdicts = Some(vec![DecidedBy::Gpu; pixels]);
         }
         let mut alone = Vec::new();
         for (place, decided) in doubtful.iter().zip(decided) {
@@ -147,27 +151,28 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
                 values[*place as usize] = decided.value;
             }
             if let Some(verdicts) = &mut band.verdicts {
-                verdicts[*place as usize] = decided.stage;
+                verdicts[*place as usize] = decided.by;
             }
-            if partials.get(*place).is_none() || decided.stage == Stage::Presumed {
+            if partials.get(*place).is_none() || decided.by == DecidedBy::Presumed {
                 alone.push(*place);
             }
         }
         self.tally = std::mem::take(&mut self.tally).merge(tally);
-        self.tally.add(Stage::Gpu, (pixels - doubtful.len()) as u64);
+        self.tally
+            .add(DecidedBy::Gpu, (pixels - doubtful.len()) as u64);
         Ok((band, alone))
     }
 
     /// Computes some pixels that the GPU has a part in again; those that the CPU decided alone are not worth a check.
-    fn check(&mut self, band: &mut Band, alone: &[u32]) -> Result<(), Stop> {
+    fn check(&mut self, band: &mut Band, alone: &[u32]) -> Result<(), FinishError> {
         let top = band.rows.end - 1;
         let width = (band.rgb.len() / 3 / band.rows.len()) as u32;
         let places = spots(width, &band.rows, alone);
-        let (decided, _) = self.tracer.pixels(top, &places, &Partials::default())?;
+        let (decided, _) = self.decider.pixels(top, &places, &Partials::default())?;
         for (place, decided) in places.iter().zip(decided) {
             let gpu = *three(band, *place);
             if gpu != decided.bytes {
-                return Err(Stop::Wrong(Wrong {
+                return Err(FinishError::Wrong(Wrong {
                     at: [place % width, top - place / width],
                     gpu,
                     cpu: decided.bytes,

@@ -4,14 +4,14 @@
 
 mod choice;
 mod finish;
-mod job;
+mod rendering;
 mod report;
 #[cfg(test)]
 mod tests;
 
 use std::io;
 
-use crate::certify::pixels::Tracer;
+use crate::certify::pixels::PixelDecider;
 use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
@@ -20,12 +20,12 @@ use crate::gpu::{GpuError, adapters};
 use crate::scene::Scene;
 use crate::stopwatch::{Phase, Stopwatch};
 use choice::{Choice, choose};
-use job::Job;
+use rendering::Rendering;
 use report::Done;
 
 use crate::frame::Halt;
-pub use crate::frame::{Band, Emit, PixelFault, Stop};
-pub use crate::settings::{Backend, Precision, Settings, Spread};
+pub use crate::frame::{Band, Emit, PixelFault, StopRequested};
+pub use crate::settings::{Backend, Precision, SamplePattern, Settings};
 pub use report::{Beside, Report, Seconds};
 
 /// Why a rendering failed.
@@ -92,7 +92,7 @@ pub struct Live<'a> {
     /// About how many seconds a dispatch is to take: whatever else wants the device has to wait for so long.
     pub dispatch_seconds: f64,
     /// Whether nobody wants the picture any more; asked every few thousand pixels.
-    pub stop: &'a Stop<'a>,
+    pub stop: &'a StopRequested<'a>,
 }
 
 impl<'a> Live<'a> {
@@ -187,7 +187,7 @@ fn run(
     scene: &Scene,
     settings: &Settings,
     choice: &Choice<Live<'_>>,
-    stop: &Stop<'_>,
+    stop: &StopRequested<'_>,
     emit: &mut Emit<'_>,
     watch: &mut Stopwatch,
 ) -> Result<(usize, Done), Error> {
@@ -202,15 +202,15 @@ fn run(
     let [width, height] = scene.camera.pixeldim;
     let rows = settings.rows_of(height);
     let jitter = settings.sampling(width, rows.end);
-    let tracer = Tracer::new(scene, settings, &jitter).stopping(stop);
-    let job = Job {
+    let decider = PixelDecider::new(scene, settings, &jitter).stopping(stop);
+    let rendering = Rendering {
         scene,
         jitter: &jitter,
-        tracer: &tracer,
+        decider: &decider,
         pool: pool.as_ref(),
         width,
         rows,
         settings,
     };
-    Ok((threads, job.run(choice, emit, watch)?))
+    Ok((threads, rendering.run(choice, emit, watch)?))
 }

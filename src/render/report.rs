@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Backend, Precision, Settings, Spread};
-use crate::certify::{Stage, StageSeconds, Tally};
+use super::{Backend, Precision, SamplePattern, Settings};
+use crate::certify::{CpuSeconds, DecidedBy, Tally};
 use crate::scene::Scene;
 use crate::stopwatch::{Phases, Stopwatch};
 
@@ -21,7 +21,7 @@ pub struct Report {
     /// Rays a pixel.
     pub samples: u32,
     /// How several samples were spread.
-    pub jitter: Option<Spread>,
+    pub jitter: Option<SamplePattern>,
     /// The longest path, in world units, if there were lights to make paths.
     pub max_path: Option<f64>,
     /// What was asked of the bytes.
@@ -47,7 +47,7 @@ pub struct Report {
     pub refined_samples: u64,
     /// The same, in hundredths of all samples.
     pub refined_samples_percent: f64,
-    /// How many pixels each stage decided.
+    /// How many pixels each kind of arithmetic decided.
     pub decided: Tally,
     /// Pixels proven to lie on a border exactly.
     pub ties: u64,
@@ -114,7 +114,7 @@ impl Report {
         let tally = done.tally;
         let pixels = tally.pixels();
         let [refined, refined_samples] = match done.backend {
-            Backend::Gpu => [pixels - tally.count(Stage::Gpu), tally.samples()],
+            Backend::Gpu => [pixels - tally.count(DecidedBy::Gpu), tally.samples()],
             Backend::Cpu | Backend::Auto => [0, 0],
         };
         let percent = |part: u64, whole: u64| 100.0 * part as f64 / whole.max(1) as f64;
@@ -137,8 +137,8 @@ impl Report {
             refined_percent: percent(refined, pixels),
             refined_samples,
             refined_samples_percent: percent(refined_samples, pixels * u64::from(settings.samples)),
-            ties: tally.count(Stage::Exact),
-            presumed: tally.count(Stage::Presumed),
+            ties: tally.count(DecidedBy::Exact),
+            presumed: tally.count(DecidedBy::Presumed),
             presumed_at: tally.presumed_at().to_vec(),
             spot_checks: done.spot_checks,
             bands: done.bands,
@@ -162,8 +162,8 @@ pub struct Seconds {
     pub phases: Phases,
     /// What others did meanwhile.
     pub beside: Beside,
-    /// CPU time for pixels decided one by one, of all threads together, by the stage that decided them.
-    pub stages: StageSeconds,
+    /// CPU time for pixels decided one by one, of all threads together, by what decided them.
+    pub stages: CpuSeconds,
 }
 
 /// Seconds of what runs beside the thread that renders, while the GPU renders.

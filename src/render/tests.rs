@@ -4,7 +4,7 @@
 mod seconds;
 
 use super::*;
-use crate::certify::Stage;
+use crate::certify::DecidedBy;
 use crate::certify::spot::spots;
 use crate::certify::trust::tests::forget_all;
 use crate::gpu::bands::assembly::tests::tamper_with;
@@ -77,7 +77,7 @@ fn a_wrong_byte_in_the_first_band_makes_the_cpu_render() {
     let revoked = report.revoked.unwrap();
     assert!(revoked.contains("was sure that pixel"), "{revoked}");
     assert!(rgb(&bands) == right);
-    assert_eq!(report.decided.count(Stage::Gpu), 0);
+    assert_eq!(report.decided.count(DecidedBy::Gpu), 0);
     assert_eq!(report.pixels, u64::from(WIDTH * HEIGHT));
 }
 
@@ -116,7 +116,11 @@ fn doubtful_pixels_are_decided_and_none_is_dropped() {
     let all: Vec<[u32; 2]> = (0..WIDTH * HEIGHT)
         .map(|n| [n % WIDTH, n / WIDTH])
         .collect();
-    for (samples, jitter) in [(1, Spread::Hash), (3, Spread::Hash), (3, Spread::Course)] {
+    for (samples, jitter) in [
+        (1, SamplePattern::Hash),
+        (3, SamplePattern::Hash),
+        (3, SamplePattern::Course),
+    ] {
         for few in [all.as_slice(), &all[70..75], &all[1000..1200]] {
             let on = |backend| Settings {
                 samples,
@@ -190,7 +194,7 @@ fn hard_scene() -> Scene {
 fn antialiased(
     backend: Backend,
     samples: u32,
-    jitter: Spread,
+    jitter: SamplePattern,
     band_rows: u32,
 ) -> (Result<Report, Error>, Vec<u8>) {
     let wanted = Settings {
@@ -211,7 +215,11 @@ fn antialiased(
 /// the same.
 #[test]
 fn only_doubtful_samples_are_computed() {
-    for (samples, jitter) in [(16, Spread::Hash), (40, Spread::Hash), (16, Spread::Course)] {
+    for (samples, jitter) in [
+        (16, SamplePattern::Hash),
+        (40, SamplePattern::Hash),
+        (16, SamplePattern::Course),
+    ] {
         let (_, right) = antialiased(Backend::Cpu, samples, jitter, 30);
         let (report, bytes) = antialiased(Backend::Gpu, samples, jitter, 30);
         let report = report.unwrap();
@@ -254,11 +262,11 @@ fn only_doubtful_samples_are_computed() {
 /// where one of these pixels is checked: one row a band has a checked pixel in each row.
 #[test]
 fn wrong_parts_are_seen() {
-    let (_, right) = antialiased(Backend::Cpu, 16, Spread::Hash, 71);
+    let (_, right) = antialiased(Backend::Cpu, 16, SamplePattern::Hash, 71);
     for fault in [Fault::Bit, Fault::Sum] {
         spoil_records(Some(fault));
-        let (few, bytes) = antialiased(Backend::Gpu, 16, Spread::Hash, 71);
-        let (many, _) = antialiased(Backend::Gpu, 16, Spread::Hash, 1);
+        let (few, bytes) = antialiased(Backend::Gpu, 16, SamplePattern::Hash, 71);
+        let (many, _) = antialiased(Backend::Gpu, 16, SamplePattern::Hash, 1);
         spoil_records(None);
         let few = few.unwrap();
         assert!(few.revoked.is_some() || bytes != right, "{fault:?}");

@@ -12,8 +12,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::check;
-use super::draft::{Assembly, Draft, Picture};
-use super::kind::{Class, Kind};
+use super::draft::{Assembly, Draft, TexturePicture};
+use super::kind::{Class, EntityKind};
 use super::model::{Material, Scene, Texels, TextureMode};
 use super::table;
 use super::texture::Pictures;
@@ -103,7 +103,7 @@ impl SceneBuilder {
         viewpoint: impl Into<DVec3>,
     ) -> &mut Self {
         if self.assembly.camera.is_some() {
-            self.error(Kind::Camera, name, "a scene has exactly one camera");
+            self.error(EntityKind::Camera, name, "a scene has exactly one camera");
         }
         let draft = Draft {
             pixeldim: pixeldim.map(f64::from),
@@ -111,14 +111,14 @@ impl SceneBuilder {
             viewpoint: viewpoint.into().to_array(),
             ..named(name)
         };
-        self.add(Kind::Camera, draft)
+        self.add(EntityKind::Camera, draft)
     }
 
     /// Adds a material: every number ≥ 0, transparency ≤ 1.
     pub fn material(&mut self, material: Material) -> MaterialId {
         let index = self.assembly.materials.len();
-        self.define(Name::Material, Kind::Material, &material.name, index);
-        self.add(Kind::Material, Draft::of_material(&material));
+        self.define(Name::Material, EntityKind::Material, &material.name, index);
+        self.add(EntityKind::Material, Draft::of_material(&material));
         MaterialId(index)
     }
 
@@ -130,7 +130,7 @@ impl SceneBuilder {
             Ok(picture) => Some(picture),
             Err(why) => {
                 self.error(
-                    Kind::Texture,
+                    EntityKind::Texture,
                     name,
                     format!(
                         "{} {}",
@@ -150,12 +150,12 @@ impl SceneBuilder {
         if bytes == 0 || bytes != texels.rgb.len() as u64 {
             let (width, height, have) = (texels.width, texels.height, texels.rgb.len());
             self.error(
-                Kind::Texture,
+                EntityKind::Texture,
                 name,
                 format!("{width} x {height} texels do not fit {have} bytes"),
             );
         }
-        let picture = Picture {
+        let picture = TexturePicture {
             filename: filename.to_owned(),
             path: filename.into(),
             texels: Arc::new(texels),
@@ -163,20 +163,20 @@ impl SceneBuilder {
         self.add_texture(name, Some(picture))
     }
 
-    fn add_texture(&mut self, name: &str, picture: Option<Picture>) -> TextureId {
+    fn add_texture(&mut self, name: &str, picture: Option<TexturePicture>) -> TextureId {
         let index = self.assembly.textures.len();
-        self.define(Name::Texture, Kind::Texture, name, index);
+        self.define(Name::Texture, EntityKind::Texture, name, index);
         if let Some(picture) = &picture
             && !check::is_name(&picture.filename)
         {
             self.error(
-                Kind::Texture,
+                EntityKind::Texture,
                 name,
                 "a scene file cannot hold this file name",
             );
         }
         self.add(
-            Kind::Texture,
+            EntityKind::Texture,
             Draft {
                 picture,
                 ..named(name)
@@ -194,7 +194,7 @@ impl SceneBuilder {
         point: impl Into<DVec3>,
     ) -> &mut Self {
         let draft = plane(name, material, normal, point);
-        self.add(Kind::Object(Class::Plane), draft)
+        self.add(EntityKind::Object(Class::Plane), draft)
     }
 
     /// Adds a sphere: its center and radius (> 0).
@@ -206,7 +206,7 @@ impl SceneBuilder {
         radius: f64,
     ) -> &mut Self {
         let draft = sphere(name, material, center, radius);
-        self.add(Kind::Object(Class::Sphere), draft)
+        self.add(EntityKind::Object(Class::Sphere), draft)
     }
 
     /// Adds a plane with tiles of two materials: the size of a tile (> 0), and the direction of its first side (not
@@ -226,7 +226,7 @@ impl SceneBuilder {
         draft.altmaterial = altmaterial.0;
         draft.dimension = dimension.into().to_array();
         draft.xdir = xdir.map(|xdir| xdir.to_array());
-        self.add(Kind::Object(Class::Tiled), draft)
+        self.add(EntityKind::Object(Class::Tiled), draft)
     }
 
     /// Adds a plane with a procedural shader, below [`table::PPLANE_SHADERS`].
@@ -242,7 +242,7 @@ impl SceneBuilder {
             shader: [f64::from(shader)],
             ..plane(name, material, normal, point)
         };
-        self.add(Kind::Object(Class::ProceduralPlane), draft)
+        self.add(EntityKind::Object(Class::ProceduralPlane), draft)
     }
 
     /// Adds a sphere with a procedural shader, below [`table::PSPHERE_SHADERS`].
@@ -258,7 +258,7 @@ impl SceneBuilder {
             shader: [f64::from(shader)],
             ..sphere(name, material, center, radius)
         };
-        self.add(Kind::Object(Class::ProceduralSphere), draft)
+        self.add(EntityKind::Object(Class::ProceduralSphere), draft)
     }
 
     /// Adds a rectangle with a corner at `point`: the direction of its first side (not parallel to the normal) and the
@@ -273,7 +273,7 @@ impl SceneBuilder {
         dimensions: impl Into<DVec2>,
     ) -> &mut Self {
         let draft = finite(plane(name, material, normal, point), xdir, dimensions);
-        self.add(Kind::Object(Class::Finite), draft)
+        self.add(EntityKind::Object(Class::Finite), draft)
     }
 
     /// Adds a rectangle with a picture on it.
@@ -292,7 +292,7 @@ impl SceneBuilder {
         let mut draft = finite(plane(name, material, normal, point), xdir, dimensions);
         draft.texture = texture.0;
         draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
-        self.add(Kind::Object(Class::Textured), draft)
+        self.add(EntityKind::Object(Class::Textured), draft)
     }
 
     /// Adds a light: where it is, and how bright (≥ 0).
@@ -303,7 +303,7 @@ impl SceneBuilder {
         emissivity: impl Into<DVec3>,
     ) -> &mut Self {
         let draft = light(name, location, emissivity);
-        self.add(Kind::Light { spot: false }, draft)
+        self.add(EntityKind::Light { spot: false }, draft)
     }
 
     /// Adds a spotlight: a light with a cone towards `point` (not its location), of half angle `theta` in degrees
@@ -322,7 +322,7 @@ impl SceneBuilder {
             theta: [theta],
             ..light(name, location, emissivity)
         };
-        self.add(Kind::Light { spot: true }, draft)
+        self.add(EntityKind::Light { spot: true }, draft)
     }
 
     /// The scene.
@@ -333,7 +333,7 @@ impl SceneBuilder {
         let assembly = std::mem::take(&mut self.assembly);
         if assembly.camera.is_none() {
             self.error(
-                Kind::Camera,
+                EntityKind::Camera,
                 "",
                 "a scene has exactly one camera, and this has none",
             );
@@ -344,7 +344,7 @@ impl SceneBuilder {
         }
     }
 
-    fn error(&mut self, kind: Kind, name: &str, message: impl Into<String>) {
+    fn error(&mut self, kind: EntityKind, name: &str, message: impl Into<String>) {
         self.errors.push(BuildError {
             entity: table::of(kind).name,
             name: name.to_owned(),
@@ -352,7 +352,7 @@ impl SceneBuilder {
         });
     }
 
-    fn define(&mut self, what: Name, kind: Kind, name: &str, index: usize) {
+    fn define(&mut self, what: Name, kind: EntityKind, name: &str, index: usize) {
         match self.names.entry((what, name.to_owned())) {
             Entry::Vacant(entry) => {
                 entry.insert(index);
@@ -365,7 +365,7 @@ impl SceneBuilder {
         }
     }
 
-    fn add(&mut self, kind: Kind, mut draft: Draft) -> &mut Self {
+    fn add(&mut self, kind: EntityKind, mut draft: Draft) -> &mut Self {
         let (materials, textures) = (self.assembly.materials.len(), self.assembly.textures.len());
         let faults = check::faults(kind, &mut draft, materials, textures);
         for fault in faults {

@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use super::draft::Draft;
-use super::kind::Kind;
-use super::lex::{self, Kind as Lexeme};
+use super::kind::EntityKind;
+use super::lex::{self, TokenKind};
 use super::parse::{Block, Parser};
 use super::table::{self, Attribute, Entity, Take};
 use crate::diagnostic::Diagnostic;
@@ -13,7 +13,7 @@ use crate::diagnostic::Diagnostic;
 impl Parser<'_> {
     pub(super) fn report_open_block(&mut self, entity: &Entity, title: &Range<usize>) {
         let token = self.window[0];
-        let (span, message, label) = if token.kind == Lexeme::End {
+        let (span, message, label) = if token.kind == TokenKind::End {
             let message = format!("the file ends inside the block of this `{}`", entity.name);
             (self.last_end..self.last_end, message, "expected `}`")
         } else {
@@ -33,7 +33,7 @@ impl Parser<'_> {
 
     pub(super) fn check_complete(&mut self, block: &Block, title: &Range<usize>) {
         let kind = block.entity.name;
-        if block.entity.kind == Kind::Material {
+        if block.entity.kind == EntityKind::Material {
             if block.given.iter().all(Option::is_none) && block.stranger.is_none() {
                 let all: Vec<_> = block
                     .entity
@@ -118,7 +118,7 @@ impl Parser<'_> {
 /// What is wrong with an entity that was built in code, by the rows of its type. `materials` and `textures` are how
 /// many there are to refer to.
 pub(super) fn faults(
-    kind: Kind,
+    kind: EntityKind,
     draft: &mut Draft,
     materials: usize,
     textures: usize,
@@ -132,7 +132,7 @@ pub(super) fn faults(
     }
     for row in entity.rows() {
         let (count, kind) = match row.take {
-            Take::Numbers(_, field) | Take::Integers(_, field) | Take::Spread(field) => {
+            Take::Numbers(_, field) | Take::Integers(_, field) | Take::OneOrThree(field) => {
                 if row.name == "xdir" && draft.xdir.is_none() {
                     continue;
                 }
@@ -181,7 +181,7 @@ pub(crate) fn fault(entity: &str, attribute: &str, values: &[f64]) -> Option<Str
         Take::Numbers(count, _) | Take::Integers(count, _) if count != values.len() => Some(
             format!("`{attribute}` takes {count} of them, not {}", values.len()),
         ),
-        Take::Spread(_) if values.len() != 3 => Some(format!(
+        Take::OneOrThree(_) if values.len() != 3 => Some(format!(
             "`{attribute}` takes 3 of them, not {}",
             values.len()
         )),
@@ -190,12 +190,12 @@ pub(crate) fn fault(entity: &str, attribute: &str, values: &[f64]) -> Option<Str
 }
 
 /// As in a scene from a file, zero is never negative.
-pub(super) fn positive_zeros(kind: Kind, mut draft: Draft) -> Draft {
+pub(super) fn positive_zeros(kind: EntityKind, mut draft: Draft) -> Draft {
     for row in table::of(kind).rows() {
         if row.name == "xdir" && draft.xdir.is_none() {
             continue;
         }
-        if let Take::Numbers(_, field) | Take::Spread(field) = row.take {
+        if let Take::Numbers(_, field) | Take::OneOrThree(field) = row.take {
             field(&mut draft).iter_mut().for_each(|value| *value += 0.0);
         }
     }

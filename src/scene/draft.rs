@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::kind::{Class, Kind};
+use super::kind::{Class, EntityKind};
 use super::model::{
     Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
     Texture, TextureMode,
@@ -27,7 +27,7 @@ pub(super) struct Draft {
     /// Index of the texture.
     pub(super) texture: usize,
     /// The picture of a texture.
-    pub(super) picture: Option<Picture>,
+    pub(super) picture: Option<TexturePicture>,
     pub(super) pixeldim: [f64; 2],
     pub(super) worlddim: [f64; 2],
     pub(super) viewpoint: [f64; 3],
@@ -51,7 +51,7 @@ pub(super) struct Draft {
 
 /// A picture that was read for a texture.
 #[derive(Debug, Clone)]
-pub(super) struct Picture {
+pub(super) struct TexturePicture {
     /// The file name as the scene gives it.
     pub(super) filename: String,
     /// Where it was read from.
@@ -60,7 +60,7 @@ pub(super) struct Picture {
     pub(super) texels: Arc<Texels>,
 }
 
-impl Picture {
+impl TexturePicture {
     /// A picture of which only the name is known.
     pub(super) fn unread(filename: &str) -> Self {
         let texels = Texels {
@@ -93,9 +93,9 @@ pub(super) struct Assembly {
 
 impl Assembly {
     /// Adds an entity. That it keeps every limit was checked before, or the scene is not going to be used.
-    pub(super) fn add(&mut self, kind: Kind, draft: Draft) {
+    pub(super) fn add(&mut self, kind: EntityKind, draft: Draft) {
         match kind {
-            Kind::Camera => {
+            EntityKind::Camera => {
                 self.camera.get_or_insert(Camera {
                     name: draft.name,
                     pixeldim: draft.pixeldim.map(|pixels| pixels as u32),
@@ -103,7 +103,7 @@ impl Assembly {
                     viewpoint: draft.viewpoint.into(),
                 });
             }
-            Kind::Material => self.materials.push(Material {
+            EntityKind::Material => self.materials.push(Material {
                 name: draft.name,
                 ambient: draft.ambient.into(),
                 diffuse: draft.diffuse.into(),
@@ -111,9 +111,9 @@ impl Assembly {
                 shininess: draft.shininess[0],
                 transparency: draft.transparency[0],
             }),
-            Kind::Texture => {
+            EntityKind::Texture => {
                 // A texture without a picture is an error that was reported; its place in the list stays taken.
-                let picture = draft.picture.unwrap_or_else(|| Picture::unread(""));
+                let picture = draft.picture.unwrap_or_else(|| TexturePicture::unread(""));
                 self.textures.push(Texture {
                     name: draft.name,
                     filename: picture.filename,
@@ -121,7 +121,7 @@ impl Assembly {
                     texels: picture.texels,
                 });
             }
-            Kind::Light { spot } => {
+            EntityKind::Light { spot } => {
                 let cone = Cone {
                     point: draft.point.into(),
                     theta: draft.theta[0],
@@ -133,7 +133,7 @@ impl Assembly {
                     cone: spot.then_some(cone),
                 });
             }
-            Kind::Object(class) => {
+            EntityKind::Object(class) => {
                 let (shape, surface) = draft.shape(class);
                 self.objects.push(Object {
                     name: draft.name,
@@ -252,7 +252,7 @@ impl Draft {
         } = texture.clone();
         Self {
             name,
-            picture: Some(Picture {
+            picture: Some(TexturePicture {
                 filename,
                 path,
                 texels,
@@ -262,7 +262,7 @@ impl Draft {
     }
 
     /// A light, to list or to check, and its kind.
-    pub(super) fn of_light(light: &Light) -> (Kind, Self) {
+    pub(super) fn of_light(light: &Light) -> (EntityKind, Self) {
         let mut draft = Self {
             name: light.name.clone(),
             location: light.location.to_array(),
@@ -277,7 +277,7 @@ impl Draft {
     }
 
     /// An object, to list or to check, and its class.
-    pub(super) fn of_object(object: &Object) -> (Kind, Self) {
+    pub(super) fn of_object(object: &Object) -> (EntityKind, Self) {
         let mut draft = Self {
             name: object.name.clone(),
             material: object.material,
@@ -318,6 +318,6 @@ impl Draft {
                 draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
             }
         }
-        (Kind::Object(object.class()), draft)
+        (EntityKind::Object(object.class()), draft)
     }
 }

@@ -2,7 +2,7 @@
 
 /// The entity types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum EntityKind {
     /// The viewpoint and the screen.
     Camera,
     /// How a surface answers light.
@@ -37,7 +37,7 @@ pub(super) enum Class {
     ProceduralSphere,
 }
 
-impl Kind {
+impl EntityKind {
     /// The entity type in the file.
     pub(super) const fn name(self) -> &'static str {
         match self {

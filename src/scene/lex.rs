@@ -10,7 +10,7 @@ use super::bytes::{is_space, mark_length};
 
 /// What a token is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TokenKind {
     /// `{`
     Open,
     /// `}`
@@ -25,7 +25,7 @@ pub(super) enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Token<'t> {
     /// What it is.
-    pub(super) kind: Kind,
+    pub(super) kind: TokenKind,
     /// Its bytes; none at the end of the text.
     pub(super) text: &'t [u8],
     /// Its first byte in the text.
@@ -45,13 +45,13 @@ impl Token<'_> {
 
     /// Is it a word?
     pub(super) fn is_word(&self) -> bool {
-        self.kind == Kind::Word
+        self.kind == TokenKind::Word
     }
 
     /// The token for a message.
     pub(super) fn quoted(&self) -> String {
         match self.kind {
-            Kind::End => String::from("the end of the file"),
+            TokenKind::End => String::from("the end of the file"),
             _ => crate::diagnostic::quote(self.text),
         }
     }
@@ -86,17 +86,17 @@ impl<'t> Lexer<'t> {
         }
     }
 
-    /// The next token; [`Kind::End`] again and again at the end.
+    /// The next token; [`TokenKind::End`] again and again at the end.
     pub(super) fn token(&mut self) -> Token<'t> {
         self.skip_space();
         let start = self.at;
         let rest = &self.text[start..];
         let (kind, length) = match rest.first() {
-            None => (Kind::End, 0),
-            Some(b'{') => (Kind::Open, 1),
-            Some(b'}') => (Kind::Close, 1),
+            None => (TokenKind::End, 0),
+            Some(b'{') => (TokenKind::Open, 1),
+            Some(b'}') => (TokenKind::Close, 1),
             Some(_) => (
-                Kind::Word,
+                TokenKind::Word,
                 rest.iter()
                     .position(|byte| ends_word(*byte))
                     .unwrap_or(rest.len()),
@@ -135,7 +135,7 @@ mod tests {
         let mut words = Vec::new();
         loop {
             let token = lexer.token();
-            if token.kind == Kind::End {
+            if token.kind == TokenKind::End {
                 assert_eq!(lexer.token(), token);
                 return words;
             }

@@ -8,7 +8,7 @@
 use std::io;
 
 use super::draft::Draft;
-use super::kind::Kind;
+use super::kind::EntityKind;
 use super::model::Scene;
 use super::table::{self, Attribute, Take};
 
@@ -17,12 +17,22 @@ use super::table::{self, Attribute, Take};
 /// # Errors
 /// When `out` fails.
 pub fn list_model(scene: &Scene, out: &mut dyn io::Write) -> io::Result<()> {
-    list(scene, Kind::Camera, Draft::of_camera(&scene.camera), out)?;
+    list(
+        scene,
+        EntityKind::Camera,
+        Draft::of_camera(&scene.camera),
+        out,
+    )?;
     for material in &scene.materials {
-        list(scene, Kind::Material, Draft::of_material(material), out)?;
+        list(
+            scene,
+            EntityKind::Material,
+            Draft::of_material(material),
+            out,
+        )?;
     }
     for texture in &scene.textures {
-        list(scene, Kind::Texture, Draft::of_texture(texture), out)?;
+        list(scene, EntityKind::Texture, Draft::of_texture(texture), out)?;
     }
     for object in &scene.objects {
         let (kind, draft) = Draft::of_object(object);
@@ -35,7 +45,12 @@ pub fn list_model(scene: &Scene, out: &mut dyn io::Write) -> io::Result<()> {
     Ok(())
 }
 
-fn list(scene: &Scene, kind: Kind, mut draft: Draft, out: &mut dyn io::Write) -> io::Result<()> {
+fn list(
+    scene: &Scene,
+    kind: EntityKind,
+    mut draft: Draft,
+    out: &mut dyn io::Write,
+) -> io::Result<()> {
     let entity = table::of(kind);
     writeln!(out, "{:<15} {}", entity.name, draft.name)?;
     for row in entity.rows() {
@@ -55,7 +70,7 @@ fn list(scene: &Scene, kind: Kind, mut draft: Draft, out: &mut dyn io::Write) ->
 
 fn values(scene: &Scene, row: &Attribute, draft: &mut Draft) -> String {
     match row.take {
-        Take::Numbers(_, field) | Take::Spread(field) => {
+        Take::Numbers(_, field) | Take::OneOrThree(field) => {
             join(field(draft), |value| format!("{:?}", value + 0.0))
         }
         Take::Integers(_, field) => join(field(draft), |value| format!("{value:.0}")),

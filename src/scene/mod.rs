@@ -10,6 +10,7 @@
 mod build;
 mod bytes;
 mod check;
+mod common_mistakes;
 mod draft;
 mod encoding;
 mod errors;
@@ -26,7 +27,6 @@ mod parse;
 mod places;
 mod recover;
 mod remarks;
-mod slips;
 pub mod table;
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::kind::{Class, Kind};
+use super::kind::{Class, EntityKind};
 
 /// A whole scene: one camera, and lists in the order of the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -194,7 +194,7 @@ pub struct Texels {
 impl Object {
     /// The entity type that the scene file calls this object by.
     pub fn entity(&self) -> &'static str {
-        Kind::Object(self.class()).name()
+        EntityKind::Object(self.class()).name()
     }
 
     /// The class of the entity that the scene file has for this shape and surface.
@@ -224,8 +224,8 @@ impl Light {
     }
 
     /// The kind of entity that it is.
-    pub(super) fn kind(&self) -> Kind {
-        Kind::Light {
+    pub(super) fn kind(&self) -> EntityKind {
+        EntityKind::Light {
             spot: self.cone.is_some(),
         }
     }

@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
-use super::lex::{Kind as Lexeme, Token};
+use super::common_mistakes;
+use super::lex::{Token, TokenKind};
 use super::number::{self, NumberError, looks_numeric};
 use super::parse::{Block, Parser};
-use super::slips;
 use super::table::{Attribute, Field};
 use super::values::give_rows_in;
 use crate::diagnostic::Diagnostic;
@@ -75,7 +75,7 @@ impl<'t> Parser<'t> {
             good: true,
         };
         let mut spaced = false;
-        while self.window[0].kind == Lexeme::Word {
+        while self.window[0].kind == TokenKind::Word {
             let token = self.window[0];
             let count = numbers.tokens.len();
             // A word that is no number is a wrong value while values lack, unless it may be the next attribute.
@@ -85,7 +85,7 @@ impl<'t> Parser<'t> {
                 break;
             }
             self.bump();
-            if let Some(error) = slips::strange_space_error(token) {
+            if let Some(error) = common_mistakes::strange_space_error(token) {
                 self.errors.report(error);
                 give_rows_in(block, token);
                 spaced = true;
@@ -182,8 +182,10 @@ fn read(token: Token<'_>, whole: bool) -> Result<f64, Box<Diagnostic>> {
         _ => format!("{word} is not a number"),
     };
     let error = Diagnostic::new(token.span(), error);
-    Err(Box::new(match slips::number_help(token.text, whole) {
-        Some(help) => error.help(help),
-        None => error,
-    }))
+    Err(Box::new(
+        match common_mistakes::number_help(token.text, whole) {
+            Some(help) => error.help(help),
+            None => error,
+        },
+    ))
 }

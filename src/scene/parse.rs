@@ -11,8 +11,8 @@ use std::path::Path;
 use super::draft::{Assembly, Draft};
 use super::encoding;
 use super::errors::Errors;
-use super::kind::Kind;
-use super::lex::{Kind as Lexeme, Lexer, Token};
+use super::kind::EntityKind;
+use super::lex::{Lexer, Token, TokenKind};
 use super::model::Scene;
 use super::names::Names;
 use super::number::looks_numeric;
@@ -128,12 +128,12 @@ impl<'t> Parser<'t> {
         if !first.is_word() || looks_numeric(first.text) {
             return false;
         }
-        let named = second.is_word() && third.kind == Lexeme::Open;
+        let named = second.is_word() && third.kind == TokenKind::Open;
         match table::find(first.text) {
             Some(entity) => {
                 let headless =
                     second.is_word() && third.is_word() && entity.row(third.text).is_some();
-                named || headless || second.kind == Lexeme::Open
+                named || headless || second.kind == TokenKind::Open
             }
             None => {
                 let is_attribute = inside.is_some_and(|entity| entity.row(first.text).is_some());
@@ -146,9 +146,9 @@ impl<'t> Parser<'t> {
         while !self.errors.are_too_many() {
             let token = self.window[0];
             match token.kind {
-                Lexeme::End => return,
-                Lexeme::Word => self.entity(),
-                Lexeme::Close => {
+                TokenKind::End => return,
+                TokenKind::Word => self.entity(),
+                TokenKind::Close => {
                     self.bump();
                     let error =
                         Diagnostic::new(token.span(), "`}` closes nothing: no block is open here");
@@ -156,7 +156,7 @@ impl<'t> Parser<'t> {
                         error.help("remove it, or see whether a block before it ends too early"),
                     );
                 }
-                Lexeme::Open => {
+                TokenKind::Open => {
                     self.bump();
                     let error = Diagnostic::new(token.span(), "`{` opens a block of no entity");
                     self.errors
@@ -184,13 +184,13 @@ impl<'t> Parser<'t> {
         };
         let kind = entity.name;
         let mut name = Some(first);
-        if first.kind == Lexeme::Open {
+        if first.kind == TokenKind::Open {
             self.errors.report(
                 wrong(first, format!("this `{kind}` has no name"))
                     .label("expected a name before it"),
             );
             name = None;
-        } else if first.is_word() && second.kind == Lexeme::Open {
+        } else if first.is_word() && second.kind == TokenKind::Open {
             self.bump();
         } else if is_row(first) && second.is_word() && (looks_numeric(second.text) || is_row(third))
         {
@@ -208,7 +208,7 @@ impl<'t> Parser<'t> {
             return self.block(entity, head, name);
         } else if first.is_word()
             && second.is_word()
-            && third.kind == Lexeme::Open
+            && third.kind == TokenKind::Open
             && !self.meets_entity()
         {
             let error = Diagnostic::new(second.span(), "a name is one word")
@@ -266,24 +266,26 @@ impl<'t> Parser<'t> {
             let token = self.window[0];
             match token.kind {
                 _ if self.errors.are_too_many() => return,
-                Lexeme::End => break false,
-                Lexeme::Close if self.closes_early(&block) => {
+                TokenKind::End => break false,
+                TokenKind::Close if self.closes_early(&block) => {
                     self.bump();
                     let message =
                         format!("`}}` ends the block of this `{}` too early", entity.name);
                     self.errors
                         .report(Diagnostic::new(token.span(), message).help("remove it"));
                 }
-                Lexeme::Close => {
+                TokenKind::Close => {
                     self.bump();
                     // With as many `}` as stray `{`, the last one is the block's.
-                    if extra == 0 || self.window[0].kind == Lexeme::End || self.starts_entity(None)
+                    if extra == 0
+                        || self.window[0].kind == TokenKind::End
+                        || self.starts_entity(None)
                     {
                         break true;
                     }
                     extra -= 1;
                 }
-                Lexeme::Open => {
+                TokenKind::Open => {
                     self.bump();
                     extra += 1;
                     let message =
@@ -291,8 +293,8 @@ impl<'t> Parser<'t> {
                     self.errors
                         .report(Diagnostic::new(token.span(), message).help("remove it"));
                 }
-                Lexeme::Word if self.starts_entity(Some(entity)) => break false,
-                Lexeme::Word => self.attribute(&mut block),
+                TokenKind::Word if self.starts_entity(Some(entity)) => break false,
+                TokenKind::Word => self.attribute(&mut block),
             }
         };
         if closed {
@@ -302,10 +304,10 @@ impl<'t> Parser<'t> {
         }
         self.check_relation(&block);
         match entity.kind {
-            Kind::Camera => self.check_first_camera(&title),
-            Kind::Material => self.materials.define(name),
-            Kind::Texture => self.textures.define(name),
-            Kind::Object(_) | Kind::Light { .. } => {}
+            EntityKind::Camera => self.check_first_camera(&title),
+            EntityKind::Material => self.materials.define(name),
+            EntityKind::Texture => self.textures.define(name),
+            EntityKind::Object(_) | EntityKind::Light { .. } => {}
         }
         self.assembly.add(entity.kind, block.draft);
     }

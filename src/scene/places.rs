@@ -8,8 +8,8 @@
 use std::ops::Range;
 
 use super::bytes::mark_length;
-use super::kind::Kind;
-use super::lex::{Kind as Lexeme, Lexer, Token};
+use super::kind::EntityKind;
+use super::lex::{Lexer, Token, TokenKind};
 use super::number::{looks_numeric, parse_number};
 use super::table::{self, Entity, Take};
 
@@ -75,26 +75,26 @@ pub fn places(text: &[u8]) -> Places {
     let mut lexer = Lexer::new(text);
     while let Some((start, kind)) = skim(&mut lexer) {
         match kind {
-            Kind::Camera => {
+            EntityKind::Camera => {
                 places.camera.get_or_insert(start);
             }
-            Kind::Material => places.materials.push(start),
-            Kind::Texture => places.textures.push(start),
-            Kind::Object(_) => places.objects.push(start),
-            Kind::Light { .. } => places.lights.push(start),
+            EntityKind::Material => places.materials.push(start),
+            EntityKind::Texture => places.textures.push(start),
+            EntityKind::Object(_) => places.objects.push(start),
+            EntityKind::Light { .. } => places.lights.push(start),
         }
     }
     places
 }
 
 /// Moves over one entity: where it starts and what it is.
-fn skim(lexer: &mut Lexer<'_>) -> Option<(usize, Kind)> {
+fn skim(lexer: &mut Lexer<'_>) -> Option<(usize, EntityKind)> {
     let (head, entity, _, _) = title(lexer)?;
     loop {
         match lexer.token().kind {
-            Lexeme::Close => return Some((head.start, entity.kind)),
-            Lexeme::Word => {}
-            Lexeme::Open | Lexeme::End => return None,
+            TokenKind::Close => return Some((head.start, entity.kind)),
+            TokenKind::Word => {}
+            TokenKind::Open | TokenKind::End => return None,
         }
     }
 }
@@ -103,7 +103,7 @@ fn skim(lexer: &mut Lexer<'_>) -> Option<(usize, Kind)> {
 fn title<'t>(lexer: &mut Lexer<'t>) -> Option<(Token<'t>, &'static Entity, Token<'t>, Token<'t>)> {
     let [head, name, open] = [lexer.token(), lexer.token(), lexer.token()];
     let entity = table::find(head.text)?;
-    (name.is_word() && open.kind == Lexeme::Open).then_some((head, entity, name, open))
+    (name.is_word() && open.kind == TokenKind::Open).then_some((head, entity, name, open))
 }
 
 impl Places {
@@ -145,7 +145,7 @@ fn read(text: &[u8], start: usize) -> Option<Place> {
                 values.push(token.is_word().then(|| token.span())?);
                 token = lexer.token();
             }
-            Take::Numbers(..) | Take::Integers(..) | Take::Spread(_) => {
+            Take::Numbers(..) | Take::Integers(..) | Take::OneOrThree(_) => {
                 while token.is_word() && looks_numeric(token.text) {
                     values.push(token.span());
                     token = lexer.token();
@@ -158,7 +158,7 @@ fn read(text: &[u8], start: usize) -> Option<Place> {
         let name = row.name;
         given.push(Given { name, key, values });
     }
-    (token.kind == Lexeme::Close).then(|| Place {
+    (token.kind == TokenKind::Close).then(|| Place {
         span: head.start..token.end(),
         kind: head.span(),
         name: name.span(),

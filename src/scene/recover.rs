@@ -1,28 +1,29 @@
 //! What the parser (text → lex → parse → [`Scene`](super::Scene)) does where an entity is not understood: says so
 //! once, and skips to where one may begin.
 
-use super::kind::Kind;
-use super::lex::{Kind as Lexeme, Token};
+use super::common_mistakes;
+use super::kind::EntityKind;
+use super::lex::{Token, TokenKind};
 use super::names::nearest;
 use super::parse::Parser;
-use super::slips;
 use super::table::{self, ENTITIES, Entity, UNSUPPORTED};
 use crate::diagnostic::Diagnostic;
 
 impl<'t> Parser<'t> {
     pub(super) fn unknown_entity(&mut self, head: Token<'t>) {
         let word = head.quoted();
-        if slips::is_comment(head.text) {
+        if common_mistakes::is_comment(head.text) {
             let error = Diagnostic::new(head.span(), format!("there is no entity {word}"));
-            self.errors.report(error.help(slips::COMMENT_HELP));
+            self.errors
+                .report(error.help(common_mistakes::COMMENT_HELP));
             self.skip_comment(head, false);
             return;
         }
-        if let Some(error) = slips::strange_space_error(head) {
+        if let Some(error) = common_mistakes::strange_space_error(head) {
             self.errors.report(error);
-            for word in slips::words_of(head) {
+            for word in common_mistakes::words_of(head) {
                 self.excuse(word);
-                if table::find(word.text).is_some_and(|entity| entity.kind == Kind::Camera) {
+                if table::find(word.text).is_some_and(|entity| entity.kind == EntityKind::Camera) {
                     self.camera.get_or_insert(word.span());
                 }
             }
@@ -42,7 +43,8 @@ impl<'t> Parser<'t> {
                 .collect::<Vec<_>>()
                 .join(", ")
         };
-        let has_block = self.window[0].kind == Lexeme::Open || self.window[1].kind == Lexeme::Open;
+        let has_block =
+            self.window[0].kind == TokenKind::Open || self.window[1].kind == TokenKind::Open;
         let stray_attribute = ENTITIES
             .iter()
             .find(|entity| entity.row(head.text).is_some());
@@ -59,7 +61,7 @@ impl<'t> Parser<'t> {
                 .help(format!("the entities are {}", all())),
         };
         self.errors.report(error);
-        if meant.is_some_and(|meant| meant.kind == Kind::Camera) {
+        if meant.is_some_and(|meant| meant.kind == EntityKind::Camera) {
             self.camera.get_or_insert(head.span());
         }
         self.skip_unknown(head);
@@ -68,15 +70,15 @@ impl<'t> Parser<'t> {
     /// Skips the name and the block of an entity that was not understood.
     fn skip_unknown(&mut self, head: Token<'t>) {
         let [first, second, _] = self.window;
-        if first.kind == Lexeme::Open {
+        if first.kind == TokenKind::Open {
             // Perhaps its name, and the type is missing.
             self.excuse(head);
         }
-        if first.is_word() && second.kind == Lexeme::Open {
+        if first.is_word() && second.kind == TokenKind::Open {
             self.excuse(first);
             self.bump();
         }
-        if self.window[0].kind == Lexeme::Open {
+        if self.window[0].kind == TokenKind::Open {
             self.bump();
             self.skip_block();
         } else {
@@ -101,7 +103,7 @@ impl<'t> Parser<'t> {
         }
         let expected = if named { "`{`" } else { "a name" };
         let found = place.quoted();
-        let span = if place.kind == Lexeme::End {
+        let span = if place.kind == TokenKind::End {
             self.last_end..self.last_end
         } else {
             place.span()
@@ -113,7 +115,7 @@ impl<'t> Parser<'t> {
         let error = error.also(head.span(), "this entity");
         self.errors
             .report(error.help("an entity is written `type name { attributes }`"));
-        if entity.kind == Kind::Camera {
+        if entity.kind == EntityKind::Camera {
             self.camera.get_or_insert(head.span());
         }
         self.skip_junk();
@@ -121,11 +123,11 @@ impl<'t> Parser<'t> {
 
     /// Skips to where an entity may start; takes the end of a block with it.
     pub(super) fn skip_junk(&mut self) {
-        while self.window[0].kind != Lexeme::End && !self.starts_entity(None) {
+        while self.window[0].kind != TokenKind::End && !self.starts_entity(None) {
             match self.bump().kind {
-                Lexeme::Close => return,
-                Lexeme::Open => return self.skip_block(),
-                Lexeme::Word | Lexeme::End => {}
+                TokenKind::Close => return,
+                TokenKind::Open => return self.skip_block(),
+                TokenKind::Word | TokenKind::End => {}
             }
         }
     }
@@ -133,14 +135,14 @@ impl<'t> Parser<'t> {
     /// Skips to the end of a block, or to where an entity starts in it.
     pub(super) fn skip_block(&mut self) {
         let mut depth = 1;
-        while depth > 0 && self.window[0].kind != Lexeme::End {
+        while depth > 0 && self.window[0].kind != TokenKind::End {
             if self.starts_entity(None) && table::find(self.window[0].text).is_some() {
                 return;
             }
             match self.bump().kind {
-                Lexeme::Open => depth += 1,
-                Lexeme::Close => depth -= 1,
-                Lexeme::Word | Lexeme::End => {}
+                TokenKind::Open => depth += 1,
+                TokenKind::Close => depth -= 1,
+                TokenKind::Word | TokenKind::End => {}
             }
         }
     }

@@ -4,7 +4,7 @@
 //! nowhere else. In the flow text → lex → parse → [`Scene`](super::Scene) this is what `parse` looks words up in.
 
 use super::draft::Draft;
-use super::kind::{Class, Kind};
+use super::kind::{Class, EntityKind};
 use super::limit::Limit;
 use super::number;
 
@@ -36,7 +36,7 @@ pub(super) enum Take {
     /// So many whole numbers.
     Integers(usize, Field),
     /// Three numbers, or one that stands for all three.
-    Spread(Field),
+    OneOrThree(Field),
     /// The name of a material.
     Material(Index),
     /// The name of a texture.
@@ -67,7 +67,7 @@ pub(super) struct Entity {
     /// Its name in the file.
     pub(super) name: &'static str,
     /// What it makes.
-    pub(super) kind: Kind,
+    pub(super) kind: EntityKind,
     /// Its rows, a list for each level of the class hierarchy.
     levels: &'static [&'static [Attribute]],
     /// What its attributes must keep between them.
@@ -130,7 +130,7 @@ const MATERIAL: &[Attribute] = &[
     ),
     optional(
         "specular",
-        Take::Spread(|d| &mut d.specular),
+        Take::OneOrThree(|d| &mut d.specular),
         Limit::NotNegative,
     ),
     optional(
@@ -299,7 +299,7 @@ const AIMLESS: Option<Relation> = Some(Relation {
 });
 
 const fn entity(
-    kind: Kind,
+    kind: EntityKind,
     levels: &'static [&'static [Attribute]],
     relation: Option<Relation>,
 ) -> Entity {
@@ -316,13 +316,13 @@ const fn object(
     levels: &'static [&'static [Attribute]],
     relation: Option<Relation>,
 ) -> Entity {
-    entity(Kind::Object(class), levels, relation)
+    entity(EntityKind::Object(class), levels, relation)
 }
 
 /// All entity types.
 pub(super) static ENTITIES: [Entity; 12] = [
-    entity(Kind::Camera, &[CAMERA], None),
-    entity(Kind::Material, &[MATERIAL], None),
+    entity(EntityKind::Camera, &[CAMERA], None),
+    entity(EntityKind::Material, &[MATERIAL], None),
     object(Class::Plane, &[OBJECT, PLANE], None),
     object(Class::Sphere, &[OBJECT, SPHERE], None),
     object(Class::Tiled, &[OBJECT, PLANE, TILED], ALONG_NORMAL),
@@ -337,9 +337,9 @@ pub(super) static ENTITIES: [Entity; 12] = [
         None,
     ),
     object(Class::Finite, &[OBJECT, PLANE, FINITE], ALONG_NORMAL),
-    entity(Kind::Light { spot: false }, &[LIGHT], None),
-    entity(Kind::Light { spot: true }, &[LIGHT, SPOT], AIMLESS),
-    entity(Kind::Texture, &[TEXTURE], None),
+    entity(EntityKind::Light { spot: false }, &[LIGHT], None),
+    entity(EntityKind::Light { spot: true }, &[LIGHT, SPOT], AIMLESS),
+    entity(EntityKind::Texture, &[TEXTURE], None),
     object(
         Class::Textured,
         &[OBJECT, PLANE, FINITE, TEXTURED],
@@ -361,7 +361,7 @@ pub(super) fn find(name: &[u8]) -> Option<&'static Entity> {
 }
 
 /// The entity type that makes this.
-pub(super) fn of(kind: Kind) -> &'static Entity {
+pub(super) fn of(kind: EntityKind) -> &'static Entity {
     // Every kind has its entity (tested); the first stands in for the compiler's sake.
     ENTITIES
         .iter()

@@ -9,7 +9,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::draft::Picture;
+use super::draft::TexturePicture;
 use super::encoding;
 use super::model::Texels;
 
@@ -49,7 +49,11 @@ pub(super) struct Pictures(HashMap<PathBuf, Result<Arc<Texels>, TextureError>>);
 
 impl Pictures {
     /// Reads a picture, unless it was read before.
-    pub(super) fn read(&mut self, folder: &Path, filename: &str) -> Result<Picture, TextureError> {
+    pub(super) fn read(
+        &mut self,
+        folder: &Path,
+        filename: &str,
+    ) -> Result<TexturePicture, TextureError> {
         let path = folder.join(filename);
         let key = path.canonicalize().unwrap_or_else(|_| path.clone());
         let texels = self
@@ -57,7 +61,7 @@ impl Pictures {
             .entry(key)
             .or_insert_with(|| read_file(&path).map(Arc::new))
             .clone()?;
-        Ok(Picture {
+        Ok(TexturePicture {
             filename: filename.to_owned(),
             path,
             texels,

@@ -2,12 +2,12 @@
 //!
 //! The inner half of the parser, text → lex → parse → [`Scene`](super::Scene).
 
-use super::draft::Picture;
+use super::common_mistakes;
+use super::draft::TexturePicture;
 use super::lex::Token;
 use super::names::nearest;
 use super::number::looks_numeric;
 use super::parse::{Block, Parser};
-use super::slips;
 use super::table::{Attribute, ENTITIES, Entity, Take};
 use crate::diagnostic::Diagnostic;
 
@@ -57,7 +57,7 @@ impl<'t> Parser<'t> {
     ) -> Option<(usize, &'static Attribute)> {
         let entity = block.entity;
         let word = key.quoted();
-        if let Some(error) = slips::strange_space_error(key) {
+        if let Some(error) = common_mistakes::strange_space_error(key) {
             self.errors.report(error);
             return self.spaced_attribute(block, key);
         }
@@ -72,10 +72,10 @@ impl<'t> Parser<'t> {
             self.skip_numbers();
             return None;
         }
-        if slips::is_comment(key.text) {
+        if common_mistakes::is_comment(key.text) {
             let message = format!("`{}` has no attribute {word}", entity.name);
             self.errors
-                .report(Diagnostic::new(key.span(), message).help(slips::COMMENT_HELP));
+                .report(Diagnostic::new(key.span(), message).help(common_mistakes::COMMENT_HELP));
             self.skip_comment(key, true);
             return None;
         }
@@ -113,7 +113,7 @@ impl<'t> Parser<'t> {
         block: &mut Block,
         key: Token<'t>,
     ) -> Option<(usize, &'static Attribute)> {
-        let mut words = slips::words_of(key);
+        let mut words = common_mistakes::words_of(key);
         let found = block.entity.row(words.next()?.text);
         if found.is_some_and(|(index, _)| block.given[index].is_none()) && words.next().is_none() {
             return found;
@@ -145,7 +145,7 @@ impl<'t> Parser<'t> {
             second.is_word() && looks_numeric(second.text) && !looks_numeric(first.text);
         first.is_word()
             && !starts_attribute
-            && !slips::is_comment(first.text)
+            && !common_mistakes::is_comment(first.text)
             && entity.row(first.text).is_none()
             && meant_row(entity, first.text).is_none()
             && !self.starts_entity(Some(entity))
@@ -176,7 +176,7 @@ impl<'t> Parser<'t> {
             Take::Integers(count, field) => {
                 self.numbers(block, row, key, count..count + 1, true, field)
             }
-            Take::Spread(field) => self.numbers(block, row, key, 1..4, false, field),
+            Take::OneOrThree(field) => self.numbers(block, row, key, 1..4, false, field),
             Take::Material(_) | Take::Texture(_) | Take::Picture => {
                 match self.name(block.entity, row, key) {
                     Some(token) => self.refer(block, row, token),
@@ -197,7 +197,7 @@ impl<'t> Parser<'t> {
                 .textures
                 .find(token, &mut self.errors)
                 .map(|found| (index, found)),
-            Take::Numbers(..) | Take::Integers(..) | Take::Spread(_) | Take::Picture => {
+            Take::Numbers(..) | Take::Integers(..) | Take::OneOrThree(_) | Take::Picture => {
                 return self.picture(block, token);
             }
         };
@@ -214,7 +214,7 @@ impl<'t> Parser<'t> {
         };
         let read = match self.folder {
             Some(folder) => self.pictures.read(folder, filename),
-            None => Ok(Picture::unread(filename)),
+            None => Ok(TexturePicture::unread(filename)),
         };
         match read {
             Ok(picture) => block.draft.picture = Some(picture),
@@ -282,7 +282,7 @@ fn meant_row(entity: &'static Entity, word: &[u8]) -> Option<(usize, &'static At
 
 /// Notes the attributes that were meant in a token with spaces that are not ASCII's: they are not missing.
 pub(super) fn give_rows_in(block: &mut Block, token: Token<'_>) {
-    for word in slips::words_of(token) {
+    for word in common_mistakes::words_of(token) {
         if let Some((index, _)) = block.entity.row(word.text) {
             block.given[index].get_or_insert(word.span());
         }

@@ -31,8 +31,8 @@ pub struct Binding {
     pub contents: Option<fn(&Packed) -> Contents<'_>>,
 }
 
-/// The number of the job's binding.
-pub const JOB: u32 = 0;
+/// The number of the dispatch's binding.
+pub const DISPATCH: u32 = 0;
 /// The number of the pixels' binding.
 pub const PIXELS: u32 = 1;
 /// The number of the binding of the samples' offsets.
@@ -142,7 +142,7 @@ fn four_words(features: &Features) -> bool {
 }
 
 bindings! {
-    binding JOB, "job", "uniform", "Job", "job", |_| true, None;
+    binding DISPATCH, "dispatch", "uniform", "Dispatch", "dispatch", |_| true, None;
     /// Red, green, blue as f32 (255 is a full byte), then the packed bytes: red, green, blue from the lowest byte up, and in
     /// the highest UNDECIDED where the CPU has to decide, else 0.
     binding PIXELS, "pixels", WRITE, "array<vec4u>", "pixels", |f| f.contains(&Feature::Values), None;
@@ -154,9 +154,9 @@ bindings! {
     binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !four_words(f), None;
     /// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
     binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !four_words(f), None;
-    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
+    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
-    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `told` reads.
+    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
     binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
@@ -166,10 +166,10 @@ bindings! {
         |f| f.contains(&Feature::SphereBuffer) && !f.contains(&Feature::SpherePoint), Some(|p| records(&p.spheres));
     binding 5, "spheres", READ, "array<SphereAndHit>", "spheres",
         |f| f.contains(&Feature::SpherePoint), Some(|p| records(p.sphere_records()));
-    /// Where the list of each tile of the screen starts here, by rows from the bottom left, and where the last one ends; then
+    /// Where the list of each cell of the screen starts here, by rows from the bottom left, and where the last one ends; then
     /// the lists: indices into `spheres`, the nearest first.
-    binding 6, "tiles", READ, "array<u32>", "lists of spheres by tiles of the screen",
-        |f| f.contains(&Feature::Tiles), Some(|p| words(p.tile_lists()));
+    binding 6, "screen_grid", READ, "array<u32>", "lists of spheres by tiles of the screen",
+        |f| f.contains(&Feature::ScreenGrid), Some(|p| words(p.cell_lists()));
     binding 7, "bvh", READ, "array<BvhNode>", "tree nodes", |f| f.contains(&Feature::Bvh), Some(|p| records(&p.bvh));
     binding 8, "tiled_planes", READ, "array<Tiled>", "tiled planes",
         |f| f.contains(&Feature::Tiled), Some(|p| records(&p.tiled_planes));

@@ -118,7 +118,7 @@ impl Screen {
 }
 
 /// The f32 next above.
-pub fn up(value: f64) -> f32 {
+pub fn round_up(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) >= value || !near.is_finite() {
         near
@@ -139,7 +139,7 @@ pub fn linear(form: [Bounded; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
         error += bound(form[i], most[i], LINEAR_ROUNDINGS[screen.sampled()])
             + form[i].value.abs() * moved[i];
     }
-    (form.map(|c| c.value as f32), up(error))
+    (form.map(|c| c.value as f32), round_up(error))
 }
 
 /// A quadratic form over (X², XY, Y², X, Y, 1).
@@ -153,7 +153,7 @@ pub fn quadratic(form: [Bounded; 6], reach: [f64; 2], screen: &Screen) -> Form<6
         error += bound(form[i], most[i], QUADRATIC_ROUNDINGS[screen.sampled()])
             + form[i].value.abs() * moved[i];
     }
-    (form.map(|c| c.value as f32), up(error))
+    (form.map(|c| c.value as f32), round_up(error))
 }
 
 /// What one term adds to a form's error.
@@ -162,7 +162,7 @@ fn bound(coefficient: Bounded, most: f64, roundings: f64) -> f64 {
 }
 
 /// An upper bound of |value|, as an f64.
-pub fn most(value: Bounded) -> f64 {
+pub fn upper_bound(value: Bounded) -> f64 {
     (value.value.abs() + value.error) * Bounded::GROW
 }
 

@@ -86,10 +86,10 @@ pub fn compose(packed: &Packed, set: &FeatureSet, entry: Entry) -> String {
         resolve(file, &features, &insert, &mut text);
     }
     if features.contains(&Feature::Moving) {
-        // Constants of the text are fields of `Job` while the camera moves.
+        // Constants of the text are fields of `Dispatch` while the camera moves.
         for field in CameraNumbers::LAYOUT.members() {
             let constant = format!("CAMERA_{}", field.name.to_uppercase());
-            text = text.replace(&constant, &format!("job.camera_{}", field.name));
+            text = text.replace(&constant, &format!("dispatch.camera_{}", field.name));
         }
     }
     constants(packed, set, &features) + &text
@@ -134,10 +134,10 @@ fn insertion(what: &str, packed: &Packed, set: &FeatureSet, features: &Features)
         }
         ["unrolled"] => unrolled(packed, set),
         ["unrolled_closest"] => unrolled_world(packed, set, |hits, object, group| {
-            format!("met_nearer(&closest, {hits}, {object}u, {group}u, range);")
+            format!("nearer_secondary(&closest, {hits}, {object}u, {group}u, range);")
         }),
         ["unrolled_any"] => unrolled_world(packed, set, |hits, _, _| {
-            format!("found = max(found, stands_before({hits}, range));")
+            format!("found = max(found, occludes({hits}, range));")
         }),
         _ => return None,
     })
@@ -188,11 +188,11 @@ fn unrolled_world(
         writeln!(text, "    {}", statement(&call, object, group)).unwrap_or_default();
     };
     for p in &lit.planes {
-        let call = format!("plane_hits_from({}, beam, range)", p.literal());
+        let call = format!("plane_hits_from({}, ray, range)", p.literal());
         line(call, p.object, p.group);
     }
     for s in &lit.spheres {
-        let call = format!("sphere_hits_from({}, beam, range)", s.literal());
+        let call = format!("sphere_hits_from({}, ray, range)", s.literal());
         line(call, s.object, s.group);
     }
     text

@@ -15,7 +15,7 @@ pub const WORKGROUP: u32 = 16;
 /// counts for all invocations that are lanes of one vector, as long as any of them goes round.
 const LOOP_LIMIT: usize = 65_535;
 
-/// Most iterations of the loops outside the tiles, for one primary ray. The shader counts those of the others.
+/// Most iterations of the loops outside the screen grid, for one primary ray. The shader counts those of the others.
 pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
 
 /// Most rays that wait while another is followed; a pixel that needs more is handed to the CPU.
@@ -74,11 +74,23 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         (Feature::Bvh, "BVH_DEPTH", packed.bvh_depth),
         (Feature::Samples, "SAMPLES", set.samples as usize),
     ];
-    if let Some(tiles) = &packed.tiles {
+    if let Some(screen_grid) = &packed.screen_grid {
         counts.extend([
-            (Feature::Tiles, "TILE_WIDTH", tiles.sides[0] as usize),
-            (Feature::Tiles, "TILE_HEIGHT", tiles.sides[1] as usize),
-            (Feature::Tiles, "TILE_COLUMNS", tiles.count[0] as usize),
+            (
+                Feature::ScreenGrid,
+                "CELL_WIDTH",
+                screen_grid.sides[0] as usize,
+            ),
+            (
+                Feature::ScreenGrid,
+                "CELL_HEIGHT",
+                screen_grid.sides[1] as usize,
+            ),
+            (
+                Feature::ScreenGrid,
+                "GRID_COLUMNS",
+                screen_grid.count[0] as usize,
+            ),
         ]);
     }
     let words = set.partial_words();
@@ -124,13 +136,14 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
 
 /// What the error bounds in the shader refer to by name.
 fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
-    let line = |name: &str, value: f64| format!("const {name} = {};", literal(bounds::up(value)));
+    let line =
+        |name: &str, value: f64| format!("const {name} = {};", literal(bounds::round_up(value)));
     if !features.contains(&Feature::Certified) {
         // Fast pictures keep away from 0 too where they take a root.
         return vec![line("TINY_SQUARE", bounds::TINY_SQUARE)];
     }
     let camera = &packed.camera;
-    let for_spread = |roundings: f64| roundings * f64::from(camera.spread) * bounds::U;
+    let for_spread = |roundings: f64| roundings * f64::from(camera.condition) * bounds::U;
     let brightest = (0.9 / f64::from(packed.dark)).min(f64::from(f32::MAX));
     let named = bounds::NAMED.iter().map(|(name, value)| line(name, *value));
     let mut lines: Vec<String> = named.collect();

@@ -41,8 +41,8 @@ features! {
     RectangleLoop = "rectangle_loop",
     /// Primary rays can hit spheres.
     Sphere = "sphere",
-    /// Spheres are many, in tiles of the screen.
-    Tiles = "tiles",
+    /// Spheres are many, in cells of the screen.
+    ScreenGrid = "screen_grid",
     /// Spheres stand in a buffer and are asked one by one.
     SphereLoop = "sphere_loop",
     /// Spheres stand in a buffer.
@@ -108,7 +108,7 @@ features! {
     /// Something is a mirror.
     Mirror = "mirror",
     /// Something lets light through.
-    Clear = "clear",
+    Transparent = "transparent",
     /// Rays go on from where they hit.
     Branches = "branches",
     /// Rays go on two ways.
@@ -120,7 +120,7 @@ features! {
     /// There are spotlights.
     Cone = "cone",
     /// Some light lies in a plane or on a sphere.
-    Level = "level",
+    LightsOnSurface = "lights_on_surface",
     /// Rays from anywhere can hit rectangles.
     RectangleAnywhere = "rectangle_anywhere",
     /// Rays from anywhere go through a loop.

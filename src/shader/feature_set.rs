@@ -7,7 +7,7 @@ use super::kind::SurfaceKind;
 use super::pack::Packed;
 use crate::procedural::{self, Family, Shader};
 use crate::real::rational::two_to;
-use crate::settings::{Settings, Spread};
+use crate::settings::{SamplePattern, Settings};
 
 /// Which parts of the shader a scene needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,8 +20,8 @@ pub struct FeatureSet {
     pub front: bool,
     /// There are spheres that primary rays can hit.
     pub spheres: bool,
-    /// They are many, in tiles of the screen.
-    pub tiles: bool,
+    /// They are many, in cells of the screen.
+    pub screen_grid: bool,
     /// Some objects share a surface.
     pub groups: bool,
     /// There are tables of indices along columns and rows.
@@ -56,13 +56,13 @@ pub struct LitFeatures {
     /// Some object is a mirror.
     pub mirror: bool,
     /// Some object lets light through.
-    pub clear: bool,
+    pub transparent: bool,
     /// Some object glints.
     pub glint: bool,
     /// Some light is a spotlight.
     pub cone: bool,
     /// Some light lies in a plane or on a sphere.
-    pub level: bool,
+    pub lights_on_surface: bool,
     /// There are planes, of either kind.
     pub planes: bool,
     /// There are rectangles.
@@ -118,14 +118,14 @@ impl FeatureSet {
             rectangles: !packed.rectangles.is_empty(),
             front: fronts.into_iter().any(|front| front != [0.0, 0.0, 1.0]),
             spheres: !packed.spheres.is_empty(),
-            tiles: packed.tiles.is_some(),
+            screen_grid: packed.screen_grid.is_some(),
             groups: packed.planes.iter().any(|p| p.group != 0)
                 || packed.rectangles.iter().any(|r| r.group != 0),
             tables: !packed.tables.words.is_empty(),
             certified,
             bvh: !packed.bvh.is_empty(),
-            unrolled: packed.tiles.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
-            quad: packed.tiles.is_none()
+            unrolled: packed.screen_grid.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
+            quad: packed.screen_grid.is_none()
                 && packed.lit.is_none()
                 && (1..=QUAD_OBJECTS[usize::from(certified)]).contains(&objects)
                 && several.is_none()
@@ -134,15 +134,18 @@ impl FeatureSet {
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
             samples: settings.samples,
-            course: several.is_some_and(|several| several.spread == Spread::Course),
+            course: several.is_some_and(|several| several.spread == SamplePattern::Course),
             lanes,
             lit: packed.lit.as_ref().map(|lit| LitFeatures {
                 mirror: lit.mirror,
-                clear: lit.clear,
+                transparent: lit.transparent,
                 glint: lit.glint,
                 cone: lit.lights.iter().any(|light| light.cosine >= -1.0),
-                level: lit.planes.iter().any(|plane| plane.level != 0)
-                    || lit.spheres.iter().any(|sphere| sphere.level != 0),
+                lights_on_surface: lit.planes.iter().any(|plane| plane.lights_on_surface != 0)
+                    || lit
+                        .spheres
+                        .iter()
+                        .any(|sphere| sphere.lights_on_surface != 0),
                 planes: !lit.planes.is_empty(),
                 rectangles: lit.planes.iter().any(|plane| plane.bounded != 0),
                 spheres: !lit.spheres.is_empty(),
@@ -268,12 +271,12 @@ impl<'a> Conditions<'a> {
             Feature::PlaneLoop => set.planes && loops,
             Feature::RectangleLoop => set.rectangles && loops,
             Feature::Sphere => set.spheres,
-            Feature::Tiles => set.spheres && set.tiles,
-            Feature::SphereLoop => set.spheres && loops && !set.tiles,
+            Feature::ScreenGrid => set.spheres && set.screen_grid,
+            Feature::SphereLoop => set.spheres && loops && !set.screen_grid,
             Feature::SphereBuffer => set.spheres && (loops || self.feature(Feature::SpherePoint)),
             // In a lit scene with a tree, hits on spheres are looked at as those of rays from anywhere are.
             Feature::SpherePoint => set.spheres && if lit { !bvh } else { psphere },
-            Feature::SphereBeyond => light.spheres && (light.mirror || light.clear || bvh),
+            Feature::SphereBeyond => light.spheres && (light.mirror || light.transparent || bvh),
             Feature::Bvh => bvh,
             Feature::FirstOrder => certified && !lit && (tiled || textured || pplane || psphere),
             Feature::Certified => certified,
@@ -285,7 +288,7 @@ impl<'a> Conditions<'a> {
             Feature::Doubtful => certified && (lit || tiled || textured || pplane || psphere),
             Feature::Mixed => {
                 let shapes = [set.planes, set.rectangles, set.spheres];
-                set.tiles || shapes.iter().filter(|shape| **shape).count() > 1
+                set.screen_grid || shapes.iter().filter(|shape| **shape).count() > 1
             }
             Feature::Modulated => set.kinds.iter().any(|kind| kind.modulates_ambient(lit)),
             Feature::Tiled => tiled,
@@ -299,19 +302,21 @@ impl<'a> Conditions<'a> {
             Feature::Samples => any && set.samples > 1,
             Feature::Partial => set.partial_words() > 0,
             Feature::Course => any && set.course,
-            Feature::Counted => any && (lit || set.tiles || set.samples > 1),
+            Feature::Counted => any && (lit || set.screen_grid || set.samples > 1),
             Feature::Lit => lit,
             Feature::LitSphere => light.spheres,
             Feature::WorldPlanes => light.planes,
-            Feature::WorldSpheres => light.spheres && (loops || light.mirror || light.clear || bvh),
+            Feature::WorldSpheres => {
+                light.spheres && (loops || light.mirror || light.transparent || bvh)
+            }
             Feature::Mirror => light.mirror,
-            Feature::Clear => light.clear,
-            Feature::Branches => light.mirror || light.clear,
-            Feature::Stack => light.mirror && light.clear,
-            Feature::AnyHit => lit && !light.clear,
+            Feature::Transparent => light.transparent,
+            Feature::Branches => light.mirror || light.transparent,
+            Feature::Stack => light.mirror && light.transparent,
+            Feature::AnyHit => lit && !light.transparent,
             Feature::Glint => light.glint,
             Feature::Cone => light.cone,
-            Feature::Level => light.level,
+            Feature::LightsOnSurface => light.lights_on_surface,
             Feature::RectangleAnywhere => light.rectangles,
             Feature::WorldLoop => lit && loops && (light.planes || light.loose_spheres),
             Feature::WorldPlaneLoop => lit && loops && light.planes,

@@ -23,9 +23,9 @@ pub fn preprocess(
     directives: &Directives<'_>,
     text: &mut String,
 ) -> Result<(), String> {
-    let mut keep = vec![true];
+    let mut included = vec![true];
     for (number, line) in (1..).zip(file.lines()) {
-        let all = keep.iter().all(|k| *k);
+        let all = included.iter().all(|k| *k);
         let Some(directive) = line.trim_start().strip_prefix("//#") else {
             let bound = line.strip_suffix("//~");
             if all && (bound.is_none() || directives.certified) {
@@ -38,15 +38,15 @@ pub fn preprocess(
         match directive.split_once(' ').unwrap_or((directive, "")) {
             ("if", name) => {
                 let holds = (directives.holds)(name);
-                keep.push(holds.ok_or_else(|| wrong("there is no such feature"))?);
+                included.push(holds.ok_or_else(|| wrong("there is no such feature"))?);
             }
-            ("else", "") if keep.len() > 1 => {
-                if let Some(last) = keep.last_mut() {
+            ("else", "") if included.len() > 1 => {
+                if let Some(last) = included.last_mut() {
                     *last = !*last;
                 }
             }
-            ("end", "") if keep.len() > 1 => {
-                keep.pop();
+            ("end", "") if included.len() > 1 => {
+                included.pop();
             }
             ("insert", name) => {
                 let inserted = (directives.insert)(name);
@@ -58,7 +58,7 @@ pub fn preprocess(
             _ => return Err(wrong("this is no directive here")),
         }
     }
-    if keep.len() == 1 {
+    if included.len() == 1 {
         Ok(())
     } else {
         Err("an `//#if` has no `//#end`".into())

@@ -82,7 +82,7 @@ records! {
         disc_error: f32,
         /// 1/s is no larger; where spheres are many.
         #[any_size = "it is only compared"]
-        most: f32,
+        max_inverse: f32,
     }
 
     /// Where a sphere that a primary ray meets is met: (H − C)/(r·s) = forms·(X, Y, 1) − center·√disc.
@@ -145,7 +145,7 @@ records! {
         /// Nothing.
         pad_0: Pad1,
         /// Lengths of the rows.
-        spread: [f32; 2],
+        row_lengths: [f32; 2],
         /// Bounds of the indices' errors, but for what the position's error adds.
         errors: [f32; 2],
         /// Nothing.
@@ -171,7 +171,7 @@ records! {
     }
 
     /// The rectangle of pixels that one dispatch makes.
-    Job as "Job" {
+    Dispatch as "Dispatch" {
         /// Column and row (from the bottom) of the top left pixel.
         first: [u32; 2],
         /// Columns and rows.
@@ -182,7 +182,7 @@ records! {
         room: u32,
     }
 
-    /// The camera. Its numbers stand in the text of the shader, or behind `Job` while it moves.
+    /// The camera. Its numbers stand in the text of the shader, or behind `Dispatch` while it moves.
     CameraNumbers as "CameraNumbers" {
         /// Pixel next to the viewpoint.
         anchor: [i32; 2],
@@ -217,7 +217,7 @@ records! {
         /// 1 where the picture repeats.
         repeats: u32,
         /// Lengths of the rows.
-        spread: [f32; 2],
+        row_lengths: [f32; 2],
         /// Bounds of the indices' errors, but for what the position's error adds.
         errors: [f32; 2],
     }
@@ -278,11 +278,11 @@ records! {
         /// normal·P on the plane.
         offset: f32,
         /// Factors of a hit point: 0 for the plane's own coordinate, else 1.
-        keep: [f32; 3],
+        axis_mask: [f32; 3],
         /// Number of the surface.
         group: u32,
         /// The plane's own coordinate, else 0.
-        own: [f32; 3],
+        fixed_coordinate: [f32; 3],
         /// Index of the object.
         object: u32,
         /// Direction of the first side.
@@ -296,7 +296,7 @@ records! {
         /// Lengths of the sides.
         lengths: [f32; 2],
         /// Bit i: light i lies in the plane.
-        level: u32,
+        lights_on_surface: u32,
         /// 1 for a rectangle.
         bounded: u32,
         /// A hit counts only up to this z.
@@ -319,7 +319,7 @@ records! {
         /// Index of the object.
         object: u32,
         /// Bit i: light i lies on the sphere.
-        level: u32,
+        lights_on_surface: u32,
         /// Length of `center`.
         size: f32,
         /// 1 / radius.
@@ -337,5 +337,5 @@ pub struct PackedCamera {
     /// Bound of the error of W, as a vector.
     pub w_error: f32,
     /// κ ≥ 1 (docs/NUMERICS.md): the terms that W·W is a sum of, over W·W.
-    pub spread: f32,
+    pub condition: f32,
 }

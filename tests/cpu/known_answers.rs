@@ -2,11 +2,11 @@
 //! derived from exact arithmetic. The CPU has to give them all; f64 with bounds alone gives most, and never a wrong one.
 
 use plumb::cpu::camera::camera_setpix;
-use plumb::cpu::pixel::Stages;
-use plumb::cpu::trace::{Fault, Limits, Unwatched, ray_trace};
-use plumb::frame::Stage;
+use plumb::cpu::pixel::ExactTracer;
+use plumb::cpu::trace::{Fault, Limits, Unobserved, ray_trace};
+use plumb::frame::DecidedBy;
 use plumb::jitter::Sampling;
-use plumb::prepare::{Prepared, View};
+use plumb::prepare::{Prepared, ViewParameters};
 use plumb::real::Bounded;
 
 use crate::common;
@@ -32,7 +32,7 @@ fn bounded(scene: &Prepared<Bounded>, x: u32, y: u32) -> Result<[u8; 3], Fault> 
         &Limits::default(),
         f64::from(x),
         f64::from(y),
-        &mut Unwatched,
+        &mut Unobserved,
     )?;
     Ok(camera_setpix(traced.color)?)
 }
@@ -48,7 +48,7 @@ fn stated_pixels_are_rendered() {
         let name = path.file_name().unwrap().display().to_string();
         let scene = common::read(&path);
         let bounds = Prepared::<Bounded>::new(&scene, 0.0);
-        let stages = Stages::new(&scene, View::from(0.0));
+        let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
         for [x, y, r, g, b] in stated {
             let want = [r, g, b].map(|byte| u8::try_from(byte).unwrap());
             all += 1;
@@ -56,11 +56,11 @@ fn stated_pixels_are_rendered() {
                 sure += 1;
                 assert_eq!(certain, want, "{name}: pixel ({x}, {y}) with bounds");
             }
-            let decided = stages
+            let decided = exact_tracer
                 .trace(&Limits::default(), Sampling::Once, x, y)
                 .unwrap();
             assert_eq!(decided.bytes, want, "{name}: pixel ({x}, {y})");
-            assert_ne!(decided.stage, Stage::Presumed, "{name}: pixel ({x}, {y})");
+            assert_ne!(decided.by, DecidedBy::Presumed, "{name}: pixel ({x}, {y})");
         }
     }
     println!("{all} stated pixels, f64 is sure of {sure}");
@@ -75,9 +75,9 @@ fn stated_pixels_are_rendered() {
 fn a_wrong_statement_is_noticed() {
     let path = common::scenes().join("known/sphere_5_12_13.txt");
     let scene = common::read(&path);
-    let stages = Stages::new(&scene, View::from(0.0));
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let [x, y, r, g, b] = stated(&std::fs::read_to_string(&path).unwrap())[0];
-    let decided = stages
+    let decided = exact_tracer
         .trace(&Limits::default(), Sampling::Once, x, y)
         .unwrap();
     assert_ne!(decided.bytes, [(r ^ 1) as u8, g as u8, b as u8]);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use plumb::cpu::debug::{Shown, list_pixels};
-use plumb::cpu::pixel::Stages;
+use plumb::cpu::pixel::ExactTracer;
 use plumb::cpu::trace::Limits;
 use plumb::prepare::Prepared;
 use plumb::scene::{self, Scene};
@@ -79,7 +79,7 @@ fn listing(scene: &Scene, rows: std::ops::Range<u32>, shown: Shown) -> String {
     list_pixels(
         scene,
         &Prepared::new(scene, 0.0),
-        &Stages::new(scene, 0.0.into()),
+        &ExactTracer::new(scene, 0.0.into()),
         &Limits::default(),
         rows,
         shown,

@@ -1,12 +1,12 @@
-//! The stages that decide a pixel on the CPU: what decides what, that bounds hold, and that a broken one is noticed.
+//! What decides a pixel on the CPU: which numbers decide what, that bounds hold, and that a broken one is noticed.
 
 use std::path::Path;
 
-use plumb::cpu::pixel::Stages;
-use plumb::cpu::trace::{Limits, Unwatched, ray_trace};
-use plumb::frame::{Part, Stage};
+use plumb::cpu::pixel::ExactTracer;
+use plumb::cpu::trace::{Limits, Unobserved, ray_trace};
+use plumb::frame::{DecidedBy, Part};
 use plumb::jitter::{self, Sampling};
-use plumb::prepare::{Prepared, View};
+use plumb::prepare::{Prepared, ViewParameters};
 use plumb::real::{Bounded, Lazy, Real};
 use plumb::scene::{Scene, load_from};
 use plumb::settings::Settings;
@@ -23,7 +23,7 @@ fn color<R: Real>(scene: &Prepared<R>, x: u32, y: u32) -> Option<[R; 3]> {
         enough: f64::INFINITY,
         ..Limits::default()
     };
-    let traced = ray_trace(scene, &limits, f64::from(x), f64::from(y), &mut Unwatched);
+    let traced = ray_trace(scene, &limits, f64::from(x), f64::from(y), &mut Unobserved);
     traced.ok().map(|t| [t.color.x, t.color.y, t.color.z])
 }
 
@@ -35,7 +35,12 @@ fn off(scale: f64) -> (usize, usize, usize) {
         let scene = common::read(&path);
         let bounds = Prepared::<Bounded>::new(&scene, 0.0);
         Lazy::clear();
-        let exact = Prepared::again(&scene, View::from(0.0), &bounds, &bounds.laters(&scene));
+        let exact = Prepared::again(
+            &scene,
+            ViewParameters::from(0.0),
+            &bounds,
+            &bounds.sources(&scene),
+        );
         let end = Lazy::mark();
         let [width, height] = scene.camera.pixeldim;
         for i in 0..12 {
@@ -90,14 +95,19 @@ fn a_tie_is_proven_and_said_so() {
          plane right {{ material g normal -1 0 1 point 4 0 -4 }}
          plane left {{ material r normal 1 0 1 point 4 0 -4 }}"
     ));
-    let stages = Stages::new(&scene, View::from(0.0));
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let trace = |x| {
         let sampling = Sampling::Once;
-        stages.trace(&Limits::default(), sampling, x, 3).unwrap()
+        exact_tracer
+            .trace(&Limits::default(), sampling, x, 3)
+            .unwrap()
     };
     // 3/8 of 255 is 95.6; the first in the file wins.
-    assert_eq!((trace(4).bytes, trace(4).stage), ([0, 95, 0], Stage::Exact));
-    assert_eq!(trace(3).stage, Stage::Bounded);
+    assert_eq!(
+        (trace(4).bytes, trace(4).by),
+        ([0, 95, 0], DecidedBy::Exact)
+    );
+    assert_eq!(trace(3).by, DecidedBy::Bounded);
     assert_ne!(trace(3).bytes, trace(5).bytes);
 }
 
@@ -112,15 +122,15 @@ fn a_discriminant_of_2_to_the_minus_102_is_a_hit() {
         ))
     };
     let decided = |scene: &Scene| {
-        let stages = Stages::new(scene, View::from(0.0));
-        stages
+        let exact_tracer = ExactTracer::new(scene, ViewParameters::from(0.0));
+        exact_tracer
             .trace(&Limits::default(), Sampling::Once, 4, 3)
             .unwrap()
     };
     let hit = decided(&ball(1.0 + 2.0_f64.powi(-51), 5.0));
-    assert_eq!((hit.bytes, hit.stage), ([159; 3], Stage::Multiprecision));
+    assert_eq!((hit.bytes, hit.by), ([159; 3], DecidedBy::Multiprecision));
     let miss = decided(&ball(1.0 + 2.0_f64.powi(-52), 5.0));
-    assert_eq!((miss.bytes, miss.stage), ([0; 3], Stage::Multiprecision));
+    assert_eq!((miss.bytes, miss.by), ([0; 3], DecidedBy::Multiprecision));
 }
 
 #[test]
@@ -132,12 +142,12 @@ fn values_are_the_nearest_f32() {
             "camera c {{ pixeldim 1 1 worlddim 2 2 viewpoint 1 1 1 }}
              material m {{ ambient {ambient:e} 0.1 0 }} plane p {{ material m normal 0 0 1 point 0 0 0 }}"
         ));
-        let stages = Stages::new(&scene, View::from(0.0)).with_values(true);
+        let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0)).with_values(true);
         let limits = Limits {
             enough: f64::INFINITY,
             ..Limits::default()
         };
-        let decided = stages.trace(&limits, Sampling::Once, 0, 0).unwrap();
+        let decided = exact_tracer.trace(&limits, Sampling::Once, 0, 0).unwrap();
         assert_eq!(decided.value, [want, 0.1, 0.0]);
     }
 }
@@ -154,7 +164,7 @@ fn what_is_missing_of_a_part_is_added() {
         ..Settings::default()
     }
     .view();
-    let stages = Stages::new(&scene, view);
+    let exact_tracer = ExactTracer::new(&scene, view);
     let plain = Prepared::<f64>::new(&scene, view);
     let limits = Limits::default();
     // The samples that the part holds: none, some, all but one of the second word.
@@ -166,7 +176,7 @@ fn what_is_missing_of_a_part_is_added() {
             for sample in (0..SAMPLES).filter(|s| held[*s as usize / 32] >> (s % 32) & 1 != 0) {
                 let [a, b] = jitter::hash(x, y, sample);
                 let (px, py) = (f64::from(x) + a, f64::from(y) + b);
-                let color = ray_trace(&plain, &limits, px, py, &mut Unwatched)
+                let color = ray_trace(&plain, &limits, px, py, &mut Unobserved)
                     .unwrap()
                     .color;
                 for (sum, c) in sum.iter_mut().zip([color.x, color.y, color.z]) {
@@ -176,10 +186,12 @@ fn what_is_missing_of_a_part_is_added() {
             let sum = sum.map(|c| c as f32);
             let error = sum.map(|c| 1e-6 * c);
             let sampling = Sampling::Hash(SAMPLES);
-            let whole = stages.trace(&limits, sampling, x, y).unwrap();
+            let whole = exact_tracer.trace(&limits, sampling, x, y).unwrap();
             let complete = |sum: [f32; 3], error: [f32; 3], summed: &[u32]| {
                 let part = Part { sum, error, summed };
-                let decided = stages.complete(&limits, sampling, x, y, &part).unwrap();
+                let decided = exact_tracer
+                    .complete(&limits, sampling, x, y, &part)
+                    .unwrap();
                 decided.map(|decided| decided.bytes)
             };
             match complete(sum, error, &held) {
@@ -221,22 +233,22 @@ fn of_many_spheres_only_those_near_the_ray_are_made_exact() {
     }
     let scene = scene(&text);
     let bounds = Prepared::<Bounded>::new(&scene, 0.0);
-    let laters = bounds.laters(&scene);
+    let sources = bounds.sources(&scene);
     Lazy::clear();
-    let exact = Prepared::<Lazy>::again(&scene, View::from(0.0), &bounds, &laters);
+    let exact = Prepared::<Lazy>::again(&scene, ViewParameters::from(0.0), &bounds, &sources);
     assert!(exact.spheres.is_empty() && exact.sphere_count() == bounds.spheres.len());
     let world = exact.world.as_ref().unwrap();
     assert!(world.spheres.is_empty() && world.sphere_count() == 4000);
     // The same picture from a scene without a tree: the first 40 spheres, which stand in front, and those alone.
-    let stages = Stages::new(&scene, View::from(0.0));
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let mut exact = 0;
     for y in 0..9 {
         for x in 0..9 {
-            let decided = stages
+            let decided = exact_tracer
                 .trace(&Limits::default(), Sampling::Once, x, y)
                 .unwrap();
-            assert!(decided.stage < Stage::Presumed);
-            exact += usize::from(decided.stage == Stage::Exact);
+            assert!(decided.by < DecidedBy::Presumed);
+            exact += usize::from(decided.by == DecidedBy::Exact);
         }
     }
     assert!(exact > 0, "no ray is tangent");

@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use plumb::certify::Stage;
-use plumb::render::{Backend, Band, Precision, Report, Settings, Spread, render};
+use plumb::certify::DecidedBy;
+use plumb::render::{Backend, Band, Precision, Report, SamplePattern, Settings, render};
 use plumb::scene::Scene;
 
 use crate::common;
@@ -69,7 +69,11 @@ fn bands_have_the_height_that_was_asked_for() {
 fn the_gpu_and_the_cpu_render_the_same() {
     for name in SCENES {
         let scene = scene(name);
-        for (samples, jitter) in [(1, Spread::Hash), (3, Spread::Hash), (3, Spread::Course)] {
+        for (samples, jitter) in [
+            (1, SamplePattern::Hash),
+            (3, SamplePattern::Hash),
+            (3, SamplePattern::Course),
+        ] {
             let on = |backend| Settings {
                 samples,
                 jitter,
@@ -91,7 +95,11 @@ fn the_gpu_and_the_cpu_render_the_same() {
 fn pieces_are_pieces_of_the_whole() {
     for name in SCENES {
         let scene = scene(name);
-        for (samples, jitter) in [(1, Spread::Hash), (3, Spread::Hash), (3, Spread::Course)] {
+        for (samples, jitter) in [
+            (1, SamplePattern::Hash),
+            (3, SamplePattern::Hash),
+            (3, SamplePattern::Course),
+        ] {
             for backend in [Backend::Gpu, Backend::Cpu] {
                 let mut whole = None;
                 for (band_rows, threads) in [
@@ -164,7 +172,7 @@ fn certified_values_are_the_cpus() {
     assert!(error.contains("--precision fast"), "{error}");
 }
 
-/// Every pixel is counted once, and its verdict is the stage that it was counted for.
+/// Every pixel is counted once, and its verdict is what it was counted for.
 #[test]
 fn verdicts_and_counts_agree() {
     for name in SCENES {
@@ -175,21 +183,17 @@ fn verdicts_and_counts_agree() {
                 ..settings(backend, Some(10))
             };
             let (bands, report) = bands(&scene, &wanted);
-            let verdicts: Vec<Stage> = bands
+            let verdicts: Vec<DecidedBy> = bands
                 .iter()
                 .flat_map(|band| band.verdicts.clone().unwrap())
                 .collect();
             assert_eq!(verdicts.len(), 93 * 71);
             assert_eq!(report.pixels, 93 * 71);
-            for stage in Stage::ALL {
-                let count = verdicts.iter().filter(|verdict| **verdict == stage).count();
-                assert_eq!(
-                    report.decided.count(stage),
-                    count as u64,
-                    "{name}: {stage:?}"
-                );
+            for by in DecidedBy::ALL {
+                let count = verdicts.iter().filter(|verdict| **verdict == by).count();
+                assert_eq!(report.decided.count(by), count as u64, "{name}: {by:?}");
             }
-            let by_gpu = report.decided.count(Stage::Gpu);
+            let by_gpu = report.decided.count(DecidedBy::Gpu);
             match report.backend {
                 Backend::Gpu => assert_eq!(report.refined, 93 * 71 - by_gpu),
                 _ => assert_eq!((report.refined, by_gpu), (0, 0)),

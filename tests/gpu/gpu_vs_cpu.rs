@@ -4,7 +4,7 @@
 //! others at least 99.95 % have to be the same. Scenes made so that f32 must fail are named here, with how much they may.
 
 use plumb::cpu::camera::camera_setpix;
-use plumb::cpu::trace::{Fault, Limits, Unwatched, ray_trace};
+use plumb::cpu::trace::{Fault, Limits, Unobserved, ray_trace};
 use plumb::prepare::Prepared;
 use plumb::real::{Bounded, Real};
 use plumb::render::{Backend, Precision, Settings, render};
@@ -33,7 +33,7 @@ fn bounded(scene: &Prepared<Bounded>, x: usize, y: usize) -> Result<[u8; 3], Fau
         &Limits::default(),
         x as f64,
         y as f64,
-        &mut Unwatched,
+        &mut Unobserved,
     )?;
     Ok(camera_setpix(traced.color)?)
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use plumb::gpu::adapters;
-use plumb::render::{Backend, Settings, Spread, render};
+use plumb::render::{Backend, SamplePattern, Settings, render};
 use plumb::scene::{Camera, Extent, Light, Material, Object, Scene, Shape, Surface};
 
 use crate::common::{on, picture};
@@ -226,7 +226,11 @@ fn rows_alone_are_rows_of_the_whole() {
         cone: None,
     });
     for backend in [Backend::Gpu, Backend::Cpu] {
-        for (samples, jitter) in [(1, Spread::Hash), (4, Spread::Hash), (4, Spread::Course)] {
+        for (samples, jitter) in [
+            (1, SamplePattern::Hash),
+            (4, SamplePattern::Hash),
+            (4, SamplePattern::Course),
+        ] {
             let settings = Settings {
                 samples,
                 jitter,

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use plumb::certify::Stage;
+use plumb::certify::DecidedBy;
 use plumb::gpu::adapters;
 use plumb::gpu::bands::DISPATCH_SECONDS;
 use plumb::gpu::canvas::{Canvas, Scatter};
@@ -52,9 +52,9 @@ fn read(gpu: &Gpu, canvas: &Canvas) -> Vec<u32> {
 
 /// What a canvas should hold of a band.
 fn words(band: &Band) -> impl Iterator<Item = u32> + '_ {
-    let stages = band.verdicts.as_ref().unwrap();
-    let pixels = band.rgb.as_chunks::<3>().0.iter().zip(stages);
-    pixels.map(|([r, g, b], stage)| u32::from_le_bytes([*r, *g, *b, *stage as u8]))
+    let verdicts = band.verdicts.as_ref().unwrap();
+    let pixels = band.rgb.as_chunks::<3>().0.iter().zip(verdicts);
+    pixels.map(|([r, g, b], by)| u32::from_le_bytes([*r, *g, *b, *by as u8]))
 }
 
 /// Renders onto a canvas; what the canvas holds, and what it should.
@@ -127,7 +127,7 @@ fn without_the_cpus_pixels_the_canvas_is_wrong() {
     let (found, expected) = on_canvas(&gpu, &scene, &settings, DISPATCH_SECONDS, None);
     let mut doubtful = 0;
     for (found, expected) in found.iter().zip(&expected) {
-        let sure = expected >> 24 == Stage::Gpu as u32;
+        let sure = expected >> 24 == DecidedBy::Gpu as u32;
         assert_eq!(sure, found >> 24 == 0);
         assert_eq!(sure, found == expected);
         doubtful += u32::from(!sure);

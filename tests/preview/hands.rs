@@ -1,7 +1,7 @@
 //! What the hands do: keys, mouse, and what becomes of the file.
 
 use image::{Rgb, RgbImage};
-use plumb::certify::Stage;
+use plumb::certify::DecidedBy;
 use plumb::certify::verdict::color;
 use plumb::render::{Backend, Settings, render};
 
@@ -179,30 +179,33 @@ fn what_decided_each_pixel_is_painted_over_the_picture() {
         backend: Backend::Gpu,
         ..Settings::default()
     };
-    let mut stages = Vec::new();
+    let mut verdicts = Vec::new();
     render(&scene, &settings, &mut |band| {
-        stages.extend(band.verdicts.clone().unwrap());
+        verdicts.extend(band.verdicts.clone().unwrap());
         Ok(())
     })
     .unwrap();
-    assert!(stages.contains(&Stage::Exact), "nothing to be painted");
+    assert!(
+        verdicts.contains(&DecidedBy::Exact),
+        "nothing to be painted"
+    );
     let size = format!("{}x{}", SIZE[0], SIZE[1]);
     let mut program = open(&display, &path, &["--size", &size]);
     let good = picture(&scene);
     let (x, y) = wait_for_picture(&mut program, "the picture", &good);
     program.window.key('v'.into(), &[]);
     program.wait_for("the verdicts", |shot| {
-        let mut pixels = stages.iter().enumerate();
-        pixels.all(|(i, stage)| {
+        let mut pixels = verdicts.iter().enumerate();
+        pixels.all(|(i, by)| {
             let (c, r) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
             let found = shot.get_pixel(x + c, y + r);
-            if *stage != Stage::Gpu {
-                return *found == Rgb(color(*stage));
+            if *by != DecidedBy::Gpu {
+                return *found == Rgb(color(*by));
             }
             // Sure pixels step back.
             let dim = |channel: usize| {
                 let byte = f64::from(good.get_pixel(c, r).0[channel]);
-                0.3 * byte + 0.3 * f64::from(color(*stage)[channel])
+                0.3 * byte + 0.3 * f64::from(color(*by)[channel])
             };
             (0..3).all(|i| (dim(i) - f64::from(found.0[i])).abs() <= 1.0)
         })

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use plumb::render::{Backend, Settings, Spread};
+use plumb::render::{Backend, SamplePattern, Settings};
 use plumb::scene::Scene;
 
 use crate::common;
@@ -133,23 +133,38 @@ fn the_oracle_gives_the_stated_pixels() {
 fn tolerances_and_samples_are_certified() {
     let gallery = |name: &str| common::scenes().join(name).with_extension("txt");
     let cases = [
-        (hard("plane_z_at_tolerance"), 0.01, 1, Spread::Hash),
+        (hard("plane_z_at_tolerance"), 0.01, 1, SamplePattern::Hash),
         (
             hard("plane_z_at_tolerance"),
             0.010000000000000002,
             1,
-            Spread::Hash,
+            SamplePattern::Hash,
         ),
-        (hard("plane_z_within_tolerance"), 0.01, 1, Spread::Hash),
-        (hard("plane_z_around_zero"), 1e-9, 1, Spread::Hash),
-        (hard("lit_mirror_shows_screen"), 0.5, 1, Spread::Hash),
-        (hard("edge_frame_31x17"), 0.0, 3, Spread::Course),
-        (hard("lit_painting_under_lamp"), 0.0, 4, Spread::Hash),
-        (hard("size_1x37"), 0.0, 2, Spread::Hash),
-        (hard("tile_edges"), 0.0, 16, Spread::Course),
-        (gallery("lit/samples"), 0.01, 4, Spread::Hash),
-        (gallery("lit/mirror_and_glass"), 0.0, 2, Spread::Course),
-        (gallery("gallery/procedural_all"), -8.0, 4, Spread::Hash),
+        (
+            hard("plane_z_within_tolerance"),
+            0.01,
+            1,
+            SamplePattern::Hash,
+        ),
+        (hard("plane_z_around_zero"), 1e-9, 1, SamplePattern::Hash),
+        (hard("lit_mirror_shows_screen"), 0.5, 1, SamplePattern::Hash),
+        (hard("edge_frame_31x17"), 0.0, 3, SamplePattern::Course),
+        (hard("lit_painting_under_lamp"), 0.0, 4, SamplePattern::Hash),
+        (hard("size_1x37"), 0.0, 2, SamplePattern::Hash),
+        (hard("tile_edges"), 0.0, 16, SamplePattern::Course),
+        (gallery("lit/samples"), 0.01, 4, SamplePattern::Hash),
+        (
+            gallery("lit/mirror_and_glass"),
+            0.0,
+            2,
+            SamplePattern::Course,
+        ),
+        (
+            gallery("gallery/procedural_all"),
+            -8.0,
+            4,
+            SamplePattern::Hash,
+        ),
     ];
     for (path, tolerance, samples, jitter) in cases {
         let mut scene = common::read(&path);

@@ -11,7 +11,7 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::dispatch::Runner;
-use super::truth::{Met, Seen};
+use super::truth::{FirstObject, PixelHit};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::image::Picture;
@@ -103,9 +103,9 @@ impl<'a> Textbook<'a> {
             &self.pipeline,
             bytes,
             self.size[0],
-            |job, pixels| {
+            |dispatch, pixels| {
                 let entries: Vec<_> = (0..)
-                    .zip([job, pixels].into_iter().chain(&self.buffers))
+                    .zip([dispatch, pixels].into_iter().chain(&self.buffers))
                     .map(|(binding, buffer)| wgpu::BindGroupEntry {
                         binding,
                         resource: buffer.as_entire_binding(),
@@ -147,12 +147,16 @@ impl<'a> Textbook<'a> {
     ///
     /// # Errors
     /// As any rendering on the GPU.
-    pub fn hits(&self, rows: &[u32]) -> Result<Vec<Seen>, TextbookError> {
+    pub fn hits(&self, rows: &[u32]) -> Result<Vec<PixelHit>, TextbookError> {
         let mut seen = Vec::new();
         self.runner().picked(rows, |pixels| {
-            seen.extend(pixels.iter().map(|&[t, object, ..]| Seen {
-                object: object.checked_sub(1).map_or(Met::Nothing, Met::Object),
-                t: f64::from(f32::from_bits(t)),
+            seen.extend(pixels.iter().map(|&[t, object, ..]| {
+                PixelHit {
+                    object: object
+                        .checked_sub(1)
+                        .map_or(FirstObject::Nothing, FirstObject::Object),
+                    t: f64::from(f32::from_bits(t)),
+                }
             }));
         })?;
         Ok(seen)

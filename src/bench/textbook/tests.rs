@@ -136,5 +136,5 @@ fn hits_of_wide_pictures_are_told() {
     assert_eq!(hits.len(), 16 * 70_000);
     // In the middle of each row there is a floor or a wall.
     let mut middles = hits.iter().skip(35_000).step_by(70_000);
-    assert!(middles.all(|hit| hit.object != Met::Nothing && (7.0..20.5).contains(&hit.t)));
+    assert!(middles.all(|hit| hit.object != FirstObject::Nothing && (7.0..20.5).contains(&hit.t)));
 }

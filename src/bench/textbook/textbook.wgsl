@@ -17,7 +17,7 @@ const PPLANE_1 = 17u;
 const PPLANE_2 = 18u;
 const PSPHERE_0 = 32u;
 
-struct Job {
+struct Dispatch {
     first: vec2u,
     size: vec2u,
     zero: u32,
@@ -70,7 +70,7 @@ struct Light {
     unused_1: u32,
 }
 
-@group(0) @binding(0) var<uniform> job: Job;
+@group(0) @binding(0) var<uniform> dispatch: Dispatch;
 //#if report
 // t, the object and 1 (0 for none), nothing, and the bytes as below.
 @group(0) @binding(1) var<storage, read_write> pixels: array<vec4u>;
@@ -354,10 +354,10 @@ var<private> stack: array<Branch, STACK>;
 
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= job.size) {
+    if any(id.xy >= dispatch.size) {
         return;
     }
-    let pixel = vec2f(f32(job.first.x + id.x), f32(i32(job.first.y) - i32(id.y)));
+    let pixel = vec2f(f32(dispatch.first.x + id.x), f32(i32(dispatch.first.y) - i32(id.y)));
 //#if prepared
     let base = vec3f(0.0);
     let dir = normalize(vec3f(pixel * CAMERA_STEP + CAMERA_OFFSET, CAMERA_Z));
@@ -419,14 +419,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
     let bytes = vec3u(clamp(255.0 * color, vec3f(0.0), vec3f(255.0)));
     let packed = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | select(0u, 0xff000000u, gave_up);
-    let place = id.y * job.size.x + id.x;
+    let place = id.y * dispatch.size.x + id.x;
 //#if report
     pixels[place] = vec4u(bitcast<u32>(hit.t), select(hit.object + 1u, 0u, hit.object == NOTHING), 0u, packed);
 //#else
     pixels[place] = packed;
 //#end
     // Never: all bindings are in the layout, also those that this scene does not need.
-    if job.zero != 0u {
+    if dispatch.zero != 0u {
         steps = lights[0].unused + texels[0] + materials[0].unused;
         pixels[place] = pixels[steps];
     }

@@ -3,7 +3,7 @@
 //!
 //! For scenes without lights, a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's,
 //! so a pixel that is sure here has its exact bytes; the others, and surfaces that are not plain or tiled, are left to
-//! [`Stages`](crate::cpu::pixel::Stages). What is computed is that of `shaders/` with `certified`, in loops that a
+//! [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is that of `shaders/` with `certified`, in loops that a
 //! compiler makes vectors of: here the closest hits, in `shade` their colours. So this is the WGSL's twin: a formula or
 //! a bound that changes in one of the two changes in the other. [`cpu`](crate::cpu) is the referee of both.
 
@@ -147,18 +147,18 @@ impl Lanes {
         if packed.unprovable.is_some() || !packed.kinds.iter().any(here) {
             return None;
         }
-        let spread = f64::from(packed.camera.spread);
+        let condition = f64::from(packed.camera.condition);
         let constants = Constants {
             u: U as f32,
-            first_order: bounds::up(bounds::FIRST_ORDER),
-            second_order: bounds::up(bounds::SECOND_ORDER),
-            root_near: bounds::up(bounds::ROOT_NEAR),
-            root_far: bounds::up(bounds::ROOT_FAR),
-            root_far_from: bounds::up(bounds::ROOT_FAR_FROM),
-            hit_roundings: bounds::up(bounds::HIT_ROUNDINGS),
-            root_roundings: bounds::up(bounds::ROOT_ROUNDINGS),
-            index_roundings: bounds::up(bounds::INDEX_ROUNDINGS),
-            value_error: bounds::up(bounds::VALUE_ROUNDINGS * spread * U),
+            first_order: bounds::round_up(bounds::FIRST_ORDER),
+            second_order: bounds::round_up(bounds::SECOND_ORDER),
+            root_near: bounds::round_up(bounds::ROOT_NEAR),
+            root_far: bounds::round_up(bounds::ROOT_FAR),
+            root_far_from: bounds::round_up(bounds::ROOT_FAR_FROM),
+            hit_roundings: bounds::round_up(bounds::HIT_ROUNDINGS),
+            root_roundings: bounds::round_up(bounds::ROOT_ROUNDINGS),
+            index_roundings: bounds::round_up(bounds::INDEX_ROUNDINGS),
+            value_error: bounds::round_up(bounds::VALUE_ROUNDINGS * condition * U),
         };
         Some(Self {
             constants,
@@ -183,16 +183,17 @@ impl Lanes {
         for plane in &packed.planes {
             plane_hits(plane, &at, &mut closest);
         }
-        match &packed.tiles {
+        match &packed.screen_grid {
             None => {
                 for sphere in &packed.spheres {
                     self.sphere_hits(sphere, &from(sphere.anchor), &mut closest);
                 }
             }
-            Some(tiles) => {
-                for &place in tiles.at([f64::from(x), f64::from(y)]) {
+            Some(screen_grid) => {
+                for &place in screen_grid.at([f64::from(x), f64::from(y)]) {
                     let sphere = &packed.spheres[place as usize];
-                    let behind = |i: usize| sphere.most < closest.inverse[i] - closest.error[i];
+                    let behind =
+                        |i: usize| sphere.max_inverse < closest.inverse[i] - closest.error[i];
                     if (0..LANES).all(behind) {
                         break;
                     }

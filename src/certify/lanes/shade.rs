@@ -43,7 +43,7 @@ impl Lanes {
                 * (self.constants.second_order * error + self.constants.value_error * inverse);
         }
         let mut ambient = [[0.0; LANES]; 3];
-        let mut tiles: Option<(u32, Tiles)> = None;
+        let mut tiles: Option<(u32, TileHits)> = None;
         for i in 0..LANES {
             let number = closest.object[i];
             let object = &packed.objects[number as usize];
@@ -90,7 +90,7 @@ impl Lanes {
     }
 
     /// Which tiles the rays hit that meet a tiled plane: `locate` and `tplane_foreground`.
-    fn tiles(&self, plane: &TiledPlane, rays: &Rays, closest: &Closest) -> Tiles {
+    fn tiles(&self, plane: &TiledPlane, rays: &Rays, closest: &Closest) -> TileHits {
         let Constants {
             u,
             index_roundings,
@@ -103,7 +103,7 @@ impl Lanes {
             (&plane.row_0, plane.fraction_0),
             (&plane.row_1, plane.fraction_1),
         ];
-        let mut tiles = Tiles {
+        let mut tiles = TileHits {
             certain: [true; LANES],
             odd: [false; LANES],
         };
@@ -123,7 +123,7 @@ impl Lanes {
                 // A NaN is no less than anything.
                 let small = index.abs() < 4_194_304.0;
                 tiles.certain[i] &=
-                    small & (beside.abs() > plane.spread[axis] * error + plane.errors[axis]);
+                    small & (beside.abs() > plane.row_lengths[axis] * error + plane.errors[axis]);
                 sum += if beside < 0.0 { nearest - 1.0 } else { nearest };
             }
             tiles.odd[i] = (sum + WHOLE).to_bits() & 1 == 1;
@@ -145,7 +145,7 @@ struct Rays {
 }
 
 /// Which tiles the lanes' rays hit.
-struct Tiles {
+struct TileHits {
     /// Whether that is certain.
     certain: [bool; LANES],
     /// Whether their indices add up to an odd number.

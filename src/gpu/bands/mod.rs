@@ -12,7 +12,7 @@ use super::GpuError;
 use super::canvas::Canvas;
 use super::device::Gpu;
 use super::pipeline::Pipeline;
-use crate::frame::Stop;
+use crate::frame::StopRequested;
 use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
 use crate::stopwatch::{Phase, Stopwatch};
@@ -58,7 +58,7 @@ pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
-    stop: &Stop<'_>,
+    stop: &StopRequested<'_>,
     watch: &mut Stopwatch,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
 ) -> Result<f64, GpuError> {

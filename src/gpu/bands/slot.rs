@@ -8,13 +8,13 @@ use super::partial;
 use super::plan::Rectangle;
 use super::{Frame, OFFSET_BYTES};
 use crate::shader::constants::WORKGROUP;
-use crate::shader::records::{CameraNumbers, Job};
+use crate::shader::records::{CameraNumbers, Dispatch};
 use crate::stopwatch::{Phase, Stopwatch};
 
 /// Buffers for one dispatch under way.
 #[derive(Debug)]
 pub(super) struct Slot {
-    job: wgpu::Buffer,
+    dispatch: wgpu::Buffer,
     offsets: Option<wgpu::Buffer>,
     pixels: wgpu::Buffer,
     staging: wgpu::Buffer,
@@ -43,15 +43,15 @@ impl Slot {
             gpu.device.create_buffer(&descriptor)
         };
         let size = partial::Layout::new(pipeline, largest).bytes;
-        let job = buffer(
-            "job",
-            (size_of::<Job>() + size_of::<CameraNumbers>()) as u64,
+        let dispatch = buffer(
+            "dispatch",
+            (size_of::<Dispatch>() + size_of::<CameraNumbers>()) as u64,
             wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         );
         if let Some(camera) = &pipeline.camera {
-            let behind = size_of::<Job>() as u64;
+            let behind = size_of::<Dispatch>() as u64;
             gpu.queue
-                .write_buffer(&job, behind, bytemuck::bytes_of(camera));
+                .write_buffer(&dispatch, behind, bytemuck::bytes_of(camera));
         }
         let pixels = buffer(
             "pixels",
@@ -90,9 +90,9 @@ impl Slot {
                 wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             )
         });
-        let bind_group = pipeline.bind(gpu, &job, &pixels, offsets.as_ref());
+        let bind_group = pipeline.bind(gpu, &dispatch, &pixels, offsets.as_ref());
         Self {
-            job,
+            dispatch,
             offsets,
             pixels,
             staging,
@@ -113,14 +113,14 @@ impl Slot {
         let rows = rectangle.band.end - rectangle.band.start;
         let pitch = columns.next_multiple_of(pipeline.across);
         let layout = partial::Layout::new(pipeline, u64::from(pitch) * u64::from(rows));
-        let job = Job {
+        let dispatch = Dispatch {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
             zero: 0,
             room: layout.room,
         };
         gpu.queue
-            .write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+            .write_buffer(&self.dispatch, 0, bytemuck::bytes_of(&dispatch));
         if let Some(offsets) = &self.offsets {
             gpu.queue.write_buffer(
                 offsets,

@@ -38,9 +38,9 @@ pub(super) fn operands() -> Vec<[u32; 2]> {
     };
     for i in 0..RANDOM {
         let (p, q, r) = (next(), next(), next());
-        // Sign and fraction of `bits`, an exponent of `spread` values around 0.
-        let number = |bits: u32, r: u32, spread: u32| {
-            bits & 0x807f_ffff | (127 - spread / 2 + r % spread) << 23
+        // Sign and fraction of `bits`, an exponent of `width` values around 0.
+        let number = |bits: u32, r: u32, width: u32| {
+            bits & 0x807f_ffff | (127 - width / 2 + r % width) << 23
         };
         pairs.push(match i % 5 {
             // Of the same size.

@@ -8,7 +8,7 @@ use wgpu::util::DeviceExt as _;
 use super::App;
 use crate::certify::verdict::meaning;
 use crate::preview::inspect::{Answer, Question};
-use crate::preview::screen::{Outlined, Seen};
+use crate::preview::screen::{ObjectMap, Outlined};
 use crate::preview::session;
 use crate::settings::Precision;
 
@@ -34,7 +34,7 @@ impl App {
                             contents: bytemuck::cast_slice(&objects),
                             usage: wgpu::BufferUsages::STORAGE,
                         });
-                let seen = Seen {
+                let seen = ObjectMap {
                     size,
                     objects: buffer,
                 };
@@ -64,7 +64,7 @@ impl App {
         self.inspector.ask(Question {
             number: picture.number,
             scene: Arc::clone(&picture.scene),
-            name: self.desk.lock().session.name(),
+            name: self.shared.lock().session.name(),
             pixel,
             still,
             objects,
@@ -120,7 +120,7 @@ impl App {
             && x < width
             && y < height;
         let place = (height.checked_sub(1 + y)?) as usize * width as usize + x as usize;
-        let stage = shown.then(|| picture.stages.get(place)).flatten()?;
-        Some(meaning(*stage))
+        let by = shown.then(|| picture.verdicts.get(place)).flatten()?;
+        Some(meaning(*by))
     }
 }

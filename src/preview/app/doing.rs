@@ -10,20 +10,20 @@ use glam::DVec3;
 use super::{App, Event};
 use crate::edit::{Target, Value, camera_block};
 use crate::preview::keys::Command;
-use crate::preview::look::{self, Area, Look};
 use crate::preview::overlay::SaveAs;
 use crate::preview::picture::{self, Mouse};
 use crate::preview::save;
 use crate::preview::session;
 use crate::preview::side::Wanted;
+use crate::preview::viewport::{self, Area, Viewport};
 use crate::scene::{self, LoadError, Scene};
 
 impl App {
     /// The viewpoint as it is shown, and the scene as the file has it.
     fn viewpoint(&self) -> Option<(DVec3, Arc<Scene>)> {
-        let paper = self.desk.lock();
-        let scene = Arc::clone(paper.session.wanted()?.0);
-        match paper.session.value(Target::Viewpoint)? {
+        let state = self.shared.lock();
+        let scene = Arc::clone(state.session.wanted()?.0);
+        match state.session.value(Target::Viewpoint)? {
             Value::Vector(viewpoint) => Some((viewpoint, scene)),
             Value::Number(_) => None,
         }
@@ -36,28 +36,29 @@ impl App {
     }
 
     fn set(&mut self, target: Target, value: Value) {
-        let mut paper = self.desk.lock();
-        paper.change(|session| session.set(target, value));
+        let mut state = self.shared.lock();
+        state.change(|session| session.set(target, value));
     }
 
     fn discard(&mut self, target: Option<Target>) {
-        self.desk.lock().change(|session| session.discard(target));
+        self.shared.lock().change(|session| session.discard(target));
     }
 
     pub(super) fn obey(&mut self, context: &Context, command: Command) {
         match command {
-            Command::Step(steps) => self
-                .move_viewpoint(|viewpoint, scene| look::stepped(&scene.camera, viewpoint, steps)),
+            Command::Step(steps) => self.move_viewpoint(|viewpoint, scene| {
+                viewport::stepped(&scene.camera, viewpoint, steps)
+            }),
             Command::Away(steps) => self.move_viewpoint(|viewpoint, scene| {
-                look::moved_away(&scene.camera, viewpoint, steps)
+                viewport::moved_away(&scene.camera, viewpoint, steps)
             }),
             Command::Reset => self.discard(Some(Target::Viewpoint)),
-            Command::Fit => self.showing.look = Look::Fit,
-            Command::OneToOne => self.zoom(context, |look, at, area, size| {
-                look.zoom_to(1.0, at, area, size);
+            Command::Fit => self.showing.viewport = Viewport::Fit,
+            Command::OneToOne => self.zoom(context, |viewport, at, area, size| {
+                viewport.zoom_to(1.0, at, area, size);
             }),
-            Command::Zoom(larger) => self.zoom(context, |look, at, area, size| {
-                look.step(larger, at, area, size);
+            Command::Zoom(larger) => self.zoom(context, |viewport, at, area, size| {
+                viewport.step(larger, at, area, size);
             }),
             Command::Verdicts => self.showing.verdicts ^= true,
             Command::Inspector => self.panel_open ^= true,
@@ -84,7 +85,11 @@ impl App {
         }
     }
 
-    fn zoom(&mut self, context: &Context, zoom: impl FnOnce(&mut Look, [f64; 2], Area, [u32; 2])) {
+    fn zoom(
+        &mut self,
+        context: &Context,
+        zoom: impl FnOnce(&mut Viewport, [f64; 2], Area, [u32; 2]),
+    ) {
         let (Some(rect), Some(picture)) = (self.area, &self.picture) else {
             return;
         };
@@ -94,7 +99,12 @@ impl App {
         let at = cursor.filter(|at| rect.contains(*at));
         let at = in_pixels(at.unwrap_or(rect.center()));
         let size = picture.scene.camera.pixeldim;
-        zoom(&mut self.showing.look, at, picture::area(rect, scale), size);
+        zoom(
+            &mut self.showing.viewport,
+            at,
+            picture::area(rect, scale),
+            size,
+        );
     }
 
     fn copy_camera(&mut self, context: &Context) {
@@ -107,7 +117,7 @@ impl App {
     }
 
     pub(super) fn save_changes(&mut self) {
-        let saving = match self.desk.lock().session.saving() {
+        let saving = match self.shared.lock().session.saving() {
             Ok(saving) => saving,
             Err(why) => {
                 // Not under the lock.
@@ -115,10 +125,10 @@ impl App {
                 return;
             }
         };
-        let (desk, teller) = (self.desk.clone(), self.teller.clone());
+        let (shared, teller) = (self.shared.clone(), self.teller.clone());
         self.on_thread("save changes", move || {
             let saved = saving.run().map(|(version, said)| {
-                desk.news(session::News::Version(version));
+                shared.news(session::News::Version(version));
                 said
             });
             teller.tell(Event::Saved(saved));
@@ -127,7 +137,7 @@ impl App {
 
     fn reload(&mut self) {
         let path = self.options.path.clone();
-        let (desk, teller) = (self.desk.clone(), self.teller.clone());
+        let (shared, teller) = (self.shared.clone(), self.teller.clone());
         self.on_thread("reload", move || {
             let news = match scene::read_file(&path) {
                 Ok(text) => session::News::Version(session::Version::read(&path, text)),
@@ -136,22 +146,22 @@ impl App {
                 }
                 Err(error) => session::News::Unreadable(error.to_string()),
             };
-            desk.news(news);
+            shared.news(news);
             teller.tell(Event::Saved(Ok("read again".into())));
         });
     }
 
     fn ask_where(&mut self) {
-        let name = Path::new(&self.desk.lock().session.name()).with_extension("png");
+        let name = Path::new(&self.shared.lock().session.name()).with_extension("png");
         self.save_as = Some(SaveAs::new(name.display().to_string()));
     }
 
     pub(super) fn save_picture(&mut self, name: &str) {
-        let paper = self.desk.lock();
-        let Some((scene, changes)) = paper.session.wanted() else {
+        let state = self.shared.lock();
+        let Some((scene, changes)) = state.session.wanted() else {
             return;
         };
-        let job = save::Job {
+        let task = save::SaveTask {
             gpu: Arc::clone(&self.gpu),
             scene: Arc::clone(scene),
             changes: changes.clone(),
@@ -161,11 +171,11 @@ impl App {
             software: self.options.software,
             stop: Arc::clone(&self.closing),
         };
-        drop(paper);
+        drop(state);
         let teller = self.teller.clone();
         self.say(format!("saving {name} …"));
         self.on_thread("save picture", move || {
-            teller.tell(Event::Saved(job.run()));
+            teller.tell(Event::Saved(task.run()));
         });
     }
 
@@ -194,12 +204,12 @@ impl App {
         self.over = mouse.over;
         if mouse.dragged != [0.0; 2] {
             self.move_viewpoint(|viewpoint, scene| {
-                look::dragged(&scene.camera, viewpoint, mouse.dragged)
+                viewport::dragged(&scene.camera, viewpoint, mouse.dragged)
             });
         }
         if mouse.wheel != 0.0 {
             self.move_viewpoint(|viewpoint, scene| {
-                look::moved_away(&scene.camera, viewpoint, -mouse.wheel)
+                viewport::moved_away(&scene.camera, viewpoint, -mouse.wheel)
             });
         }
         if mouse.clicked {

@@ -50,7 +50,7 @@ pub(super) struct Node {
     pub(super) op: Op,
     /// When the node was last looked at.
     pub(super) seen: u32,
-    pub(super) near: Bounded,
+    pub(super) enclosure: Bounded,
     pub(super) known: Option<Box<Known>>,
 }
 
@@ -131,15 +131,15 @@ impl Arena {
         &self.nodes[x.0 as usize]
     }
 
-    pub(super) fn near(&self, x: Lazy) -> Bounded {
-        self.node(x).near
+    pub(super) fn enclosure(&self, x: Lazy) -> Bounded {
+        self.node(x).enclosure
     }
 
     pub(super) fn note(&mut self, effort: Effort) {
         self.effort = self.effort.max(effort);
     }
 
-    pub(super) fn push(&mut self, op: Op, near: Bounded) -> Lazy {
+    pub(super) fn push(&mut self, op: Op, enclosure: Bounded) -> Lazy {
         if self.nodes.len() >= MAX_NODES {
             self.note(Effort::Presumed);
             return FAULT;
@@ -147,10 +147,10 @@ impl Arena {
         self.nodes.push(Node {
             op,
             seen: 0,
-            near: if near.error.is_nan() || !near.value.is_finite() {
+            enclosure: if enclosure.error.is_nan() || !enclosure.value.is_finite() {
                 UNKNOWN
             } else {
-                near
+                enclosure
             },
             known: None,
         });
@@ -170,11 +170,11 @@ impl Arena {
     }
 
     pub(super) fn ratio(&mut self, value: &Ratio) -> Lazy {
-        let near = Bounded::ratio(value);
-        if near.error == 0.0 {
-            return self.number(near.value);
+        let enclosure = Bounded::ratio(value);
+        if enclosure.error == 0.0 {
+            return self.number(enclosure.value);
         }
-        self.push(Op::Ratio(Box::new(value.clone())), near)
+        self.push(Op::Ratio(Box::new(value.clone())), enclosure)
     }
 
     pub(super) fn add(&mut self, a: Lazy, b: Lazy) -> Lazy {
@@ -187,8 +187,8 @@ impl Arena {
         if a == FAULT || b == FAULT {
             return FAULT;
         }
-        let near = self.near(a) + self.near(b);
-        self.push(Op::Add(a.0, b.0), near)
+        let enclosure = self.enclosure(a) + self.enclosure(b);
+        self.push(Op::Add(a.0, b.0), enclosure)
     }
 
     pub(super) fn sub(&mut self, a: Lazy, b: Lazy) -> Lazy {
@@ -204,8 +204,8 @@ impl Arena {
         if a == ZERO {
             return self.neg(b);
         }
-        let near = self.near(a) - self.near(b);
-        self.push(Op::Sub(a.0, b.0), near)
+        let enclosure = self.enclosure(a) - self.enclosure(b);
+        self.push(Op::Sub(a.0, b.0), enclosure)
     }
 
     pub(super) fn mul(&mut self, a: Lazy, b: Lazy) -> Lazy {
@@ -221,8 +221,8 @@ impl Arena {
         if b == ONE {
             return a;
         }
-        let near = self.near(a) * self.near(b);
-        self.push(Op::Mul(a.0, b.0), near)
+        let enclosure = self.enclosure(a) * self.enclosure(b);
+        self.push(Op::Mul(a.0, b.0), enclosure)
     }
 
     pub(super) fn div(&mut self, a: Lazy, b: Lazy) -> Lazy {
@@ -235,24 +235,24 @@ impl Arena {
         if b == ONE {
             return a;
         }
-        let near = self.near(a) / self.near(b);
-        self.push(Op::Div(a.0, b.0), near)
+        let enclosure = self.enclosure(a) / self.enclosure(b);
+        self.push(Op::Div(a.0, b.0), enclosure)
     }
 
     pub(super) fn neg(&mut self, a: Lazy) -> Lazy {
         if a == ZERO || a == FAULT {
             return a;
         }
-        let near = -self.near(a);
-        self.push(Op::Neg(a.0), near)
+        let enclosure = -self.enclosure(a);
+        self.push(Op::Neg(a.0), enclosure)
     }
 
     pub(super) fn sqrt(&mut self, a: Lazy) -> Lazy {
         if a == ZERO || a == ONE || a == FAULT {
             return a;
         }
-        let near = self.near(a).sqrt();
-        self.push(Op::Sqrt(a.0), near)
+        let enclosure = self.enclosure(a).sqrt();
+        self.push(Op::Sqrt(a.0), enclosure)
     }
 
     pub(super) fn pow(&mut self, x: Lazy, exponent: f64) -> Lazy {

@@ -48,7 +48,7 @@ impl Ball {
     }
 
     /// An integer times a power of two, within a unit of it.
-    pub(super) fn near(mid: IBig, exp: i64, rad: Mag) -> Self {
+    pub(super) fn new(mid: IBig, exp: i64, rad: Mag) -> Self {
         Self { mid, exp, rad }
     }
 
@@ -168,9 +168,9 @@ impl Ball {
     /// The root of a number that is known not to be negative; None if it is negative all the same.
     pub(super) fn sqrt(&self, bits: usize) -> Option<Self> {
         let positive = self.mid > IBig::ZERO;
-        let clear = Low::new(&self.mid, self.exp, self.rad).is_some();
-        if !positive || !clear {
-            if clear {
+        let nonzero = Low::new(&self.mid, self.exp, self.rad).is_some();
+        if !positive || !nonzero {
+            if nonzero {
                 return None;
             }
             let most = Mag::above(&self.mid, self.exp).add(self.rad);

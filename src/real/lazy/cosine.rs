@@ -60,7 +60,7 @@ pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
         k += 2;
     }
     let exp = -(precision as i64);
-    Ball::near(sum, exp, Mag::two_to(exp + 32))
+    Ball::new(sum, exp, Mag::two_to(exp + 32))
 }
 
 /// Whether the cosine of the angle can be had from rationals by square roots.

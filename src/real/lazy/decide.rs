@@ -47,7 +47,7 @@ impl Arena {
     /// The sign of a number, proven; or presumed to be that of 0, which is noted.
     pub(super) fn sign(&mut self, x: Lazy) -> Result<Ordering, Undecided> {
         let node = self.node(x);
-        if let Ok(sign) = node.near.sign() {
+        if let Ok(sign) = node.enclosure.sign() {
             if sign == Ordering::Equal && x != ZERO {
                 self.note(Effort::Proven);
             }
@@ -119,7 +119,7 @@ impl Arena {
     fn set_zero(&mut self, x: Lazy) {
         let node = &mut self.nodes[x.0 as usize];
         node.op = Op::Number(0.0);
-        node.near = Bounded::exact(0.0);
+        node.enclosure = Bounded::exact(0.0);
         node.known = None;
     }
 
@@ -135,11 +135,11 @@ impl Arena {
 
     /// The f64 enclosure of a number whose floor is asked for. That it is an integer is a tie.
     pub(super) fn clear_of_integers(&mut self, x: Lazy) -> Option<Bounded> {
-        let near = self.near(x);
-        if near.error == 0.0 && near.value.fract() == 0.0 && x != ZERO {
+        let enclosure = self.enclosure(x);
+        if enclosure.error == 0.0 && enclosure.value.fract() == 0.0 && x != ZERO {
             self.note(Effort::Proven);
         }
-        near.error.is_finite().then_some(near)
+        enclosure.error.is_finite().then_some(enclosure)
     }
 
     /// The largest integer that is not above the number.
@@ -147,10 +147,10 @@ impl Arena {
         if matches!(self.node(x).op, Op::Fault) {
             return Err(Undecided);
         }
-        let near = self.near(x);
-        let small = near.error < 0.25 && near.value.abs() < (1_u64 << 51) as f64;
+        let enclosure = self.enclosure(x);
+        let small = enclosure.error < 0.25 && enclosure.value.abs() < (1_u64 << 51) as f64;
         let whole = if small {
-            Some(IBig::from(near.value.round() as i64))
+            Some(IBig::from(enclosure.value.round() as i64))
         } else {
             BITS.into_iter()
                 .find_map(|bits| self.ball(x, bits).and_then(|ball| ball.integer()))
@@ -167,19 +167,20 @@ impl Arena {
     /// The f64 enclosure, made narrower than this share of the number if it can be.
     pub(super) fn narrow(&mut self, x: Lazy, share: f64) -> Bounded {
         // What is smaller than 10⁻³⁰ of the viewpoint's distance matters to nobody who asks for f64.
-        let wide = |near: Bounded| {
-            near.error > share * near.value.abs() && near.error > 1e-30 || near.error.is_nan()
+        let wide = |enclosure: Bounded| {
+            enclosure.error > share * enclosure.value.abs() && enclosure.error > 1e-30
+                || enclosure.error.is_nan()
         };
         if self.nodes.len() > LARGEST {
-            return self.near(x);
+            return self.enclosure(x);
         }
         for bits in BITS {
-            if !wide(self.near(x)) || matches!(self.node(x).op, Op::Fault) {
+            if !wide(self.enclosure(x)) || matches!(self.node(x).op, Op::Fault) {
                 break;
             }
             self.ball(x, bits);
         }
-        self.near(x)
+        self.enclosure(x)
     }
 
     /// The number in so many bits or more.
@@ -195,9 +196,9 @@ impl Arena {
             let ball = self.compute(i, bits);
             let node = &mut self.nodes[i as usize];
             if let Some(ball) = &ball {
-                let near = ball.bounded();
-                if near.error < node.near.error && near.value.is_finite() {
-                    node.near = near;
+                let enclosure = ball.bounded();
+                if enclosure.error < node.enclosure.error && enclosure.value.is_finite() {
+                    node.enclosure = enclosure;
                 }
             }
             node.known.get_or_insert_default().ball = Some((bits, ball));

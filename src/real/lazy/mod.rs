@@ -51,8 +51,8 @@ impl Lazy {
 
     /// The cosine of an angle of which nothing but approximations is known.
     fn opaque_cosine(angle: f64) -> Self {
-        let near = cosine::cosine(angle, 128).bounded();
-        with(|arena| arena.push(Op::Cosine(angle), near))
+        let enclosure = cosine::cosine(angle, 128).bounded();
+        with(|arena| arena.push(Op::Cosine(angle), enclosure))
     }
 }
 
@@ -127,8 +127,8 @@ impl Real for Lazy {
     }
 
     fn floor(self) -> Result<f64, Undecided> {
-        if let Some(near) = with(|arena| arena.clear_of_integers(self))
-            && let Ok(low) = near.floor()
+        if let Some(enclosure) = with(|arena| arena.clear_of_integers(self))
+            && let Ok(low) = enclosure.floor()
         {
             return Ok(low);
         }
@@ -142,8 +142,8 @@ impl Real for Lazy {
     }
 
     fn floor_mod(self, modulus: u32) -> Result<u32, Undecided> {
-        if let Some(near) = with(|arena| arena.clear_of_integers(self))
-            && let Ok(rest) = near.floor_mod(modulus)
+        if let Some(enclosure) = with(|arena| arena.clear_of_integers(self))
+            && let Ok(rest) = enclosure.floor_mod(modulus)
         {
             return Ok(rest);
         }
@@ -153,15 +153,15 @@ impl Real for Lazy {
         u32::try_from(rest).map_err(|_| Undecided)
     }
 
-    fn approx(self) -> f64 {
-        self.rough().value
+    fn to_f64(self) -> f64 {
+        self.quick_enclosure().value
     }
 
-    fn rough(self) -> Bounded {
-        with(|arena| arena.near(self))
+    fn quick_enclosure(self) -> Bounded {
+        with(|arena| arena.enclosure(self))
     }
 
-    fn near(self) -> Bounded {
+    fn enclosure(self) -> Bounded {
         with(|arena| arena.narrow(self, 1e-9))
     }
 
@@ -170,10 +170,10 @@ impl Real for Lazy {
             return Ok(value);
         }
         // Near the middle between two neighbours: which side decides, and on it the even one.
-        let near = self.bounded();
+        let enclosure = self.bounded();
         let (low, high) = (
-            (near.value - near.error) as f32,
-            (near.value + near.error) as f32,
+            (enclosure.value - enclosure.error) as f32,
+            (enclosure.value + enclosure.error) as f32,
         );
         let (low, high) = if low < high {
             (low, high)

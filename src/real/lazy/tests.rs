@@ -223,7 +223,7 @@ fn balls_contain_the_exact_result() {
             // A ball around x that holds numbers e away, and one of these.
             let e = (y.abs() * 1e-3).min(1e12);
             let radius = Mag::above(&IBig::from((e * 1024.0) as i64 + 1), -10);
-            let ball = Ball::exact(x).add(&Ball::near(IBig::ZERO, 0, radius), bits);
+            let ball = Ball::exact(x).add(&Ball::new(IBig::ZERO, 0, radius), bits);
             let ball = ball.unwrap();
             (ball, ratio(x) + ratio(e * 0.999))
         };
@@ -292,7 +292,7 @@ fn balls_in_f64_keep_what_they_stand_for() {
         let scale = i % 2200 - 1100;
         let product = Ball::exact(a).mul(&Ball::exact(b), 300).unwrap();
         let scaled = product
-            .mul(&Ball::near(IBig::ONE, i64::from(scale), Mag::ZERO), 300)
+            .mul(&Ball::new(IBig::ONE, i64::from(scale), Mag::ZERO), 300)
             .unwrap();
         let exact = ratio(a) * ratio(b) * power_of_two(scale);
         let near = scaled.bounded();
@@ -386,7 +386,7 @@ fn enclosures_contain_the_exact_number() {
         let lazies: Vec<Lazy> = values.iter().map(|&x| number(x)).collect();
         let x = lazies[0] * lazies[1] - lazies[2] / (lazies[3] * lazies[3] + number(1.0));
         let exact = &ratios[0] * &ratios[1] - &ratios[2] / (&ratios[3] * &ratios[3] + ratio(1.0));
-        let near = with(|arena| arena.near(x));
+        let near = with(|arena| arena.enclosure(x));
         assert!(
             abs(ratio(near.value) - exact.clone()) <= ratio(near.error * Bounded::GROW),
             "{values:?}"

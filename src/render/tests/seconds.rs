@@ -82,8 +82,8 @@ fn all_time_of_a_picture_is_in_the_phases_of_its_report() {
     for (lit, scene) in [(false, unlit), (true, hard_scene())] {
         for samples in [1, 4] {
             for (precision, jitter) in [
-                (Precision::Certified, Spread::Hash),
-                (Precision::Fast, Spread::Course),
+                (Precision::Certified, SamplePattern::Hash),
+                (Precision::Fast, SamplePattern::Course),
             ] {
                 let on = |backend| Settings {
                     samples,

@@ -18,7 +18,7 @@ fn examples_are_right() {
         let (count, numbers) = match row.take {
             _ if !row.required => continue,
             Take::Numbers(count, _) | Take::Integers(count, _) => (count, true),
-            Take::Spread(_) => (3, true),
+            Take::OneOrThree(_) => (3, true),
             Take::Material(_) | Take::Texture(_) | Take::Picture => (1, false),
         };
         assert_eq!(words.len(), count, "{}", row.name);

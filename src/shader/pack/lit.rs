@@ -4,7 +4,7 @@ use super::{Packed, f32x3};
 use crate::prepare::extent::Extent;
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{U, most, up};
+use crate::shader::bounds::{U, round_up, upper_bound};
 use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
@@ -25,11 +25,11 @@ pub struct Lit {
     /// Some object is a mirror.
     pub mirror: bool,
     /// Some object lets light through.
-    pub clear: bool,
+    pub transparent: bool,
     /// Some object glints.
     pub glint: bool,
     /// A light beyond those that have a bit lies on a surface.
-    pub late_level: bool,
+    pub unnumbered_light_on_surface: bool,
 }
 
 /// Marks a sphere in [`LitObject::place`].
@@ -47,12 +47,12 @@ impl Lit {
         for (place, sphere) in (0..).zip(spheres) {
             places[sphere.object] = place | SPHERE_BIT;
         }
-        let levels = planes
+        let on_surfaces = planes
             .iter()
-            .map(|p| &p.level)
-            .chain(spheres.iter().map(|s| &s.level));
+            .map(|p| &p.lights_on_surface)
+            .chain(spheres.iter().map(|s| &s.lights_on_surface));
         Self {
-            late_level: levels.flatten().any(|light| *light >= 32),
+            unnumbered_light_on_surface: on_surfaces.flatten().any(|light| *light >= 32),
             objects: (0..scene.surfaces.len())
                 .map(|object| LitObject {
                     material: scene.materials[object] as u32,
@@ -67,7 +67,7 @@ impl Lit {
             spheres: spheres.iter().map(|s| world_sphere(world, s)).collect(),
             in_tree,
             mirror: used().any(|material| material.mirror),
-            clear: used().any(|material| material.clear),
+            transparent: used().any(|material| material.transparent),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
         }
     }
@@ -126,12 +126,12 @@ fn light(light: &prepare::Light<Bounded>) -> Light {
 
 /// The length, or a little more.
 fn size(v: V3<Bounded>) -> f32 {
-    up(most(v.dot(v).sqrt()))
+    round_up(upper_bound(v.dot(v).sqrt()))
 }
 
 /// The bits of the first 32 lights in a list. Beyond them f32's own rounding decides: fast rendering only.
-fn bits(level: &[usize]) -> u32 {
-    level
+fn bits(lights_on_surface: &[usize]) -> u32 {
+    lights_on_surface
         .iter()
         .filter(|&&light| light < 32)
         .map(|light| 1 << light)
@@ -139,12 +139,12 @@ fn bits(level: &[usize]) -> u32 {
 }
 
 fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> WorldPlane {
-    let mut keep = [1.0; 3];
-    let mut own = [0.0; 3];
+    let mut axis_mask = [1.0; 3];
+    let mut fixed_coordinate = [0.0; 3];
     let mut highest = world.highest.value as f32;
-    if let Some((axis, at)) = plane.own {
-        keep[axis] = 0.0;
-        own[axis] = at.value as f32;
+    if let Some((axis, at)) = plane.fixed_coordinate {
+        axis_mask[axis] = 0.0;
+        fixed_coordinate[axis] = at.value as f32;
         if axis == 2 {
             // All of it is below, or it would not be here.
             highest = f32::MAX;
@@ -156,23 +156,23 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         Extent::Unbounded => (0, [zero; 2], [none; 2], [none; 2]),
         Extent::Rectangle(r) => (1, r.rows, r.origin, r.dimensions),
     };
-    let most_of = |values: [Bounded; 2]| most(values[0]).max(most(values[1]));
+    let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),
         offset: plane.offset.value as f32,
-        keep,
+        axis_mask,
         group: world.groups[plane.object],
-        own,
+        fixed_coordinate,
         object: plane.object as u32,
         row_0: f32x3(rows[0]),
         origin_0: origin[0].value as f32,
         row_1: f32x3(rows[1]),
         origin_1: origin[1].value as f32,
         lengths: dimensions.map(|d| d.value as f32),
-        level: bits(&plane.level),
+        lights_on_surface: bits(&plane.lights_on_surface),
         bounded,
         highest,
-        sides_error: up(8.0 * U * (most_of(origin) + most_of(dimensions))),
+        sides_error: round_up(8.0 * U * (larger_bound(origin) + larger_bound(dimensions))),
         pad: Default::default(),
     }
 }
@@ -183,7 +183,7 @@ fn world_sphere(world: &World<Bounded>, sphere: &prepare::WorldSphere<Bounded>) 
         radius: sphere.radius.value as f32,
         group: world.groups[sphere.object],
         object: sphere.object as u32,
-        level: bits(&sphere.level),
+        lights_on_surface: bits(&sphere.lights_on_surface),
         size: size(sphere.center),
         inverse_radius: (Bounded::exact(1.0) / sphere.radius).value as f32,
         pad: Default::default(),

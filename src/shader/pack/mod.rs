@@ -14,18 +14,18 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bounds::{Screen, U, most, up};
+use super::bounds::{Screen, U, round_up, upper_bound};
 use super::kind::SurfaceKind;
 use super::records::{
     BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere,
     SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
 use crate::prepare::plane::Sides;
-use crate::prepare::tiles::Tiles;
+use crate::prepare::screen_grid::ScreenGrid;
 use crate::prepare::{self, Prepared};
 use crate::real::{Bounded, V3};
 use crate::scene::Scene;
-use crate::settings::{Settings, Spread};
+use crate::settings::{SamplePattern, Settings};
 use shared::Surfaces;
 use surface::{procedural_plane, texplane, tiled_plane};
 
@@ -51,7 +51,7 @@ pub struct Packed {
     /// Spheres that a primary ray can hit.
     pub spheres: Vec<Sphere>,
     /// Which of them are seen where on the screen, if they are many.
-    pub tiles: Option<Arc<Tiles>>,
+    pub screen_grid: Option<Arc<ScreenGrid>>,
     /// One for each of `spheres`, if anybody looks at hits on spheres: where it is hit.
     pub sphere_points: Vec<SphereHit>,
     /// Tiled planes.
@@ -84,8 +84,8 @@ impl Packed {
     pub fn prepared(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Self {
         let lattice = match settings.supersampling().map(|several| several.spread) {
             None => 1.0,
-            Some(Spread::Hash) => 1.0 / 1024.0,
-            Some(Spread::Course) => 0.0,
+            Some(SamplePattern::Hash) => 1.0 / 1024.0,
+            Some(SamplePattern::Course) => 0.0,
         };
         let screen = Screen {
             pixels: scene.camera.pixeldim,
@@ -113,7 +113,7 @@ impl Packed {
                 .collect(),
             bvh_depth: tree.map_or(0, |bvh| bvh.depth),
             spheres: Vec::new(),
-            tiles: prepared.tiles.clone(),
+            screen_grid: prepared.screen_grid.clone(),
             sphere_points: Vec::new(),
             tiled_planes: Vec::new(),
             pplanes: Vec::new(),
@@ -152,7 +152,7 @@ impl Packed {
             .as_ref()
             .map(|world| Lit::new(prepared, world, &packed));
         packed.dark = packed.darkness();
-        packed.tree_size = up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
+        packed.tree_size = round_up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
         packed.unprovable = packed.doubtful_numbers();
         packed
     }
@@ -175,12 +175,19 @@ impl Packed {
                 )),
             }
         }
-        let most = |place: usize| scene.tiles.as_ref().map_or(0.0, |tiles| tiles.most[place]);
+        let max_inverse = |place: usize| {
+            scene
+                .screen_grid
+                .as_ref()
+                .map_or(0.0, |screen_grid| screen_grid.max_inverse[place])
+        };
         self.spheres = scene
             .spheres
             .par_iter()
             .enumerate()
-            .map(|(place, sphere)| primary::sphere(&scene.camera, sphere, screen, most(place)))
+            .map(|(place, sphere)| {
+                primary::sphere(&scene.camera, sphere, screen, max_inverse(place))
+            })
             .collect();
         // Plain spheres without light are not looked at where they are hit.
         let psphere =
@@ -278,30 +285,32 @@ impl Packed {
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
     pub fn tests(&self) -> usize {
-        let listed = |tiles: &Arc<Tiles>| tiles.members.len() / (tiles.starts.len() - 1);
-        let primary = self.loop_iterations() + self.tiles.as_ref().map_or(0, listed);
+        let listed = |screen_grid: &Arc<ScreenGrid>| {
+            screen_grid.members.len() / (screen_grid.starts.len() - 1)
+        };
+        let primary = self.loop_iterations() + self.screen_grid.as_ref().map_or(0, listed);
         let Some(lit) = &self.lit else { return primary };
         // A shadow ray a light, a few times over for mirrors.
         primary + 4 * (1 + lit.lights.len()) * (lit.loop_iterations() + 8 * self.bvh_depth + 4)
     }
 
-    /// Iterations of the loops over objects outside the tiles, for one primary ray.
+    /// Iterations of the loops over objects outside the screen grid, for one primary ray.
     pub fn loop_iterations(&self) -> usize {
-        let spheres = match &self.tiles {
+        let spheres = match &self.screen_grid {
             Some(_) => 0,
             None => self.spheres.len(),
         };
         self.planes.len() + self.rectangles.len() + spheres
     }
 
-    /// Where the list of each tile starts in what this returns, and where the last one ends; then the lists.
-    pub fn tile_lists(&self) -> Vec<u32> {
-        let Some(tiles) = &self.tiles else {
+    /// Where the list of each cell starts in what this returns, and where the last one ends; then the lists.
+    pub fn cell_lists(&self) -> Vec<u32> {
+        let Some(screen_grid) = &self.screen_grid else {
             return Vec::new();
         };
-        let starts = tiles.starts.len() as u32;
-        let starts = tiles.starts.iter().map(|start| start + starts);
-        starts.chain(tiles.members.iter().copied()).collect()
+        let starts = screen_grid.starts.len() as u32;
+        let starts = screen_grid.starts.iter().map(|start| start + starts);
+        starts.chain(screen_grid.members.iter().copied()).collect()
     }
 }
 
@@ -318,8 +327,8 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
     let unit = crate::real::rational::two_to(-camera.scale);
     let reach = screen.reach(camera.anchor);
     let d = camera.distance.value;
-    let offset = camera.offset.map(most);
-    let parts = [0, 1].map(|i| most(camera.step[i]) * reach[i] + offset[i]);
+    let offset = camera.offset.map(upper_bound);
+    let parts = [0, 1].map(|i| upper_bound(camera.step[i]) * reach[i] + offset[i]);
     // κ − 1 = Σ 2o/(√(d² + o²) − o): docs/NUMERICS.md.
     let more = offset.map(|o| 2.0 * o / ((d * d + o * o).sqrt() - o));
     PackedCamera {
@@ -332,8 +341,8 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
             unit: unit as f32,
             pad: Default::default(),
         },
-        w_error: up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
-        spread: up(1.0 + more[0] + more[1]),
+        w_error: round_up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
+        condition: round_up(1.0 + more[0] + more[1]),
     }
 }
 

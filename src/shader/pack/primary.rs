@@ -4,7 +4,7 @@ use crate::prepare::camera::ANCHOR_LIMIT;
 use crate::prepare::plane::{Step, Strip};
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{Form, Screen, U, linear, most, quadratic, step, up};
+use crate::shader::bounds::{Form, Screen, U, linear, quadratic, round_up, step, upper_bound};
 use crate::shader::records::{Plane, Rectangle, Sphere, SphereHit};
 
 fn number(value: f64) -> Bounded {
@@ -167,8 +167,8 @@ fn small(
 
 /// The outline of a sphere that is seen as an ellipse, from a pixel next to its middle.
 fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Option<Outline> {
-    let seen = sphere.seen.as_ref()?;
-    let disc = small(camera, sphere, seen.anchor, seen.offset);
+    let projected = sphere.projected.as_ref()?;
+    let disc = small(camera, sphere, projected.anchor, projected.offset);
     let [a, b, c, d, e, _] = disc.map(|c| c.value);
     let determinant = 4.0 * a * c - b * b;
     if !(a < 0.0 && determinant > 0.0) {
@@ -179,12 +179,12 @@ fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Optio
         (b * d - 2.0 * a * e) / determinant,
     ];
     let shift = middle.map(f64::round);
-    let place = [0, 1].map(|i| f64::from(seen.anchor[i]) + shift[i]);
+    let place = [0, 1].map(|i| f64::from(projected.anchor[i]) + shift[i]);
     if !place.iter().all(|p| p.abs() <= ANCHOR_LIMIT) {
         return None;
     }
     let anchor = place.map(|p| p as i32);
-    let u = [0, 1].map(|i| seen.offset[i] + number(shift[i]) * camera.step[i]);
+    let u = [0, 1].map(|i| projected.offset[i] + number(shift[i]) * camera.step[i]);
     let disc = small(camera, sphere, anchor, u);
     // The ellipse's box and a little more. With S = |a|X² + |c|Y² and μ = 1 − |b|/√(4ac) the form is at most
     // |f| + L√S − μS, which is below −δS from S = S₀ on; and all its terms together are below 3S there.
@@ -216,12 +216,12 @@ fn outline(
     ellipse(camera, sphere).unwrap_or_else(|| wide(camera, sphere, screen))
 }
 
-/// The record of a sphere; its hits' 1/s are at most `most`.
+/// The record of a sphere; its hits' 1/s are at most `max_inverse`.
 pub(super) fn sphere(
     camera: &Camera<Bounded>,
     sphere: &prepare::Sphere<Bounded>,
     screen: &Screen,
-    most: f32,
+    max_inverse: f32,
 ) -> Sphere {
     let outline = outline(camera, sphere, screen);
     let (disc, disc_error) = quadratic(outline.disc, outline.reach, screen);
@@ -235,7 +235,7 @@ pub(super) fn sphere(
         along_error,
         anchor: outline.anchor,
         disc_error,
-        most,
+        max_inverse,
     }
 }
 
@@ -262,9 +262,9 @@ pub(super) fn sphere_hit(
     let error = [x.1, y.1, z.1].map(f64::from);
     SphereHit {
         form_x: x.0,
-        form_error: up(error.iter().map(|e| e * e).sum::<f64>().sqrt() * (1.0 + 1e-9)),
+        form_error: round_up(error.iter().map(|e| e * e).sum::<f64>().sqrt() * (1.0 + 1e-9)),
         form_y: y.0,
-        center_size: up(most(center.dot(center).sqrt())),
+        center_size: round_up(upper_bound(center.dot(center).sqrt())),
         form_z: z.0,
         pad_0: Default::default(),
         center: super::f32x3(center),

@@ -10,7 +10,7 @@ impl Packed {
     /// Why no bound is to be relied on: a number so large that products of such numbers might overflow.
     pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
         let camera = &self.camera.numbers;
-        let far = f64::from(self.camera.spread) <= 64.0
+        let far = f64::from(self.camera.condition) <= 64.0
             && camera.fits()
             && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
             && f64::from(camera.gain) >= 1.0 / LARGEST
@@ -18,7 +18,11 @@ impl Packed {
         if !far {
             return Some("the camera's numbers are too large or too small");
         }
-        if self.lit.as_ref().is_some_and(|lit| lit.late_level) {
+        if self
+            .lit
+            .as_ref()
+            .is_some_and(|lit| lit.unnumbered_light_on_surface)
+        {
             return Some("a light after the first 32 lies on a surface");
         }
         // Whatever may be uploaded or written as literals, whether this shader has it or not.

@@ -4,22 +4,22 @@ use super::f32x3;
 use crate::prepare::Prepared;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{U, most, up};
+use crate::shader::bounds::{U, round_up, upper_bound};
 use crate::shader::records::{ProceduralPlane, Texplane, TiledPlane};
 
 /// The bound of an index's error that does not come from the position: of the fraction added to it.
 fn index_error(fraction: Bounded) -> f32 {
-    up(6.0 * U * (1.0 + most(fraction)) + 2.0 * fraction.error)
+    round_up(6.0 * U * (1.0 + upper_bound(fraction)) + 2.0 * fraction.error)
 }
 
 fn length(row: V3<Bounded>) -> f32 {
-    up(most(row.dot(row).sqrt()))
+    round_up(upper_bound(row.dot(row).sqrt()))
 }
 
 pub(super) fn tiled_plane(
     scene: &Prepared<Bounded>,
     tiled: &Tiled<Bounded>,
-    own: usize,
+    material: usize,
 ) -> TiledPlane {
     let (zero, one) = (Bounded::zero(), Bounded::exact(1.0));
     let world = [V3::new(one, zero, zero), V3::new(zero, zero, one)];
@@ -30,7 +30,11 @@ pub(super) fn tiled_plane(
     ];
     let [even, odd] = tiled.materials;
     // The shader gives even sums the object's own material.
-    let (other, flip) = if even == own { (odd, 0) } else { (even, 1) };
+    let (other, flip) = if even == material {
+        (odd, 0)
+    } else {
+        (even, 1)
+    };
     TiledPlane {
         row_0: f32x3(rows[0]),
         fraction_0: tiled.index[0].fraction.value as f32,
@@ -40,7 +44,7 @@ pub(super) fn tiled_plane(
         altindex: other as u32,
         parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
         pad_0: Default::default(),
-        spread: rows.map(length),
+        row_lengths: rows.map(length),
         errors: tiled.index.map(|i| index_error(i.fraction)),
         pad_1: Default::default(),
     }
@@ -48,7 +52,7 @@ pub(super) fn tiled_plane(
 
 pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
     let [x, y] = pplane.from_point;
-    let offset = most(x.offset).max(most(y.offset));
+    let offset = upper_bound(x.offset).max(upper_bound(y.offset));
     ProceduralPlane {
         per_unit: pplane.index.map(|i| i.per_unit.value as f32),
         index_error: pplane
@@ -57,7 +61,7 @@ pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
             .into_iter()
             .fold(0.0, f32::max),
         fraction: pplane.index.map(|i| i.fraction.value as f32),
-        from_point_error: up(4.0 * U * offset + x.offset.error + y.offset.error),
+        from_point_error: round_up(4.0 * U * offset + x.offset.error + y.offset.error),
         parity: pplane.index.map(|i| i.parity as f32),
         pad: Default::default(),
         from_point: [
@@ -82,7 +86,7 @@ pub(super) fn texplane(textured: &Textured<Bounded>, first: u32) -> Texplane {
         size: textured.size,
         first,
         repeats: u32::from(textured.repeats),
-        spread: rows.map(length),
+        row_lengths: rows.map(length),
         errors: origins.map(index_error),
     }
 }

@@ -11,7 +11,7 @@ use crate::real::rational::parity;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
-/// What `told` in `shaders/surface.wgsl` reads, in the order in which it stands there behind the objects.
+/// What `index_table` in `shaders/surface.wgsl` reads, in the order in which it stands there behind the objects.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tables {
     /// For each object the place of its first entry, 0 for none; then the entries: of each object one for each column of

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
-use plumb::render::{Precision, Settings, Spread};
+use plumb::render::{Precision, SamplePattern, Settings};
 use plumb::scene::{
     Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
     Texture, TextureMode,
@@ -273,9 +273,9 @@ pub(super) fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
             1
         },
         jitter: if has(CourseSamples) {
-            Spread::Course
+            SamplePattern::Course
         } else {
-            Spread::Hash
+            SamplePattern::Hash
         },
         precision: if has(Fast) {
             Precision::Fast

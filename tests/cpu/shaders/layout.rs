@@ -2,7 +2,7 @@
 
 use plumb::shader::binding::BINDINGS;
 use plumb::shader::record::{Layout, Record as _};
-use plumb::shader::records::{CameraNumbers, Job, LAYOUTS};
+use plumb::shader::records::{CameraNumbers, Dispatch, LAYOUTS};
 
 use super::*;
 
@@ -121,16 +121,19 @@ fn bindings_are_as_the_table_says() {
 }
 
 #[test]
-fn a_camera_that_moves_stands_behind_the_job() {
+fn a_camera_that_moves_stands_behind_the_dispatch() {
     let (packed, features) = packed(&[Plane, Lamp, Fast]);
     let wgsl = compose(&packed, &features.while_moving(), Entry::Picture);
-    let (members, span) = wgsl_struct(&assert_valid(&wgsl, "moving"), "Job").unwrap();
-    let (job, camera) = (Job::LAYOUT, CameraNumbers::LAYOUT);
-    let behind = camera
-        .members()
-        .map(|field| (format!("camera_{}", field.name), job.size + field.offset));
+    let (members, span) = wgsl_struct(&assert_valid(&wgsl, "moving"), "Dispatch").unwrap();
+    let (dispatch, camera) = (Dispatch::LAYOUT, CameraNumbers::LAYOUT);
+    let behind = camera.members().map(|field| {
+        (
+            format!("camera_{}", field.name),
+            dispatch.size + field.offset,
+        )
+    });
     assert_eq!(members[4..], behind.collect::<Vec<_>>());
-    assert_eq!(span, job.size + camera.size);
+    assert_eq!(span, dispatch.size + camera.size);
 }
 
 #[test]

@@ -56,12 +56,12 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     let both: Vec<_> = without_many.iter().copied().filter(dark).collect();
     let (wgsl, plain_features) = composed(&both);
     assert_valid(&wgsl, "all without lights, unrolled");
-    let spread: Vec<_> = without_many
+    let hashed: Vec<_> = without_many
         .iter()
         .copied()
         .filter(|i| *i != CourseSamples)
         .collect();
-    let (wgsl, spread_features) = composed(&spread);
+    let (wgsl, hashed_features) = composed(&hashed);
     assert_valid(&wgsl, "all, unrolled, spread by the hash");
     // (Without the plain ones, which hide tiles and textures in the same place.)
     let once: Vec<_> = all
@@ -79,7 +79,7 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
         once_features,
         dark_features,
         plain_features,
-        spread_features,
+        hashed_features,
         features,
     ];
     // Together they have every feature, so that none is left out above.
@@ -200,7 +200,7 @@ fn what_is_not_used_is_not_there() {
         ("rival", &|i| {
             !matches!(i, Values | Fast) && !objects(i).is_empty()
         }),
-        ("tiles[", &|i| i == ManySpheres),
+        ("screen_grid[", &|i| i == ManySpheres),
         ("bvh", &|_| false),
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
         ("Pplane", &|i| matches!(i, Pplane(_))),
@@ -213,7 +213,7 @@ fn what_is_not_used_is_not_there() {
         ("color_wheel", &|i| {
             matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))
         }),
-        ("fn told(", &|i| {
+        ("fn index_table(", &|i| {
             matches!(i, Tiled | Pplane(0 | 2) | Texplane(_))
         }),
         ("vec4u(bitcast", &|i| i == Values),
@@ -230,7 +230,7 @@ fn what_is_not_used_is_not_there() {
         ("fn shadow", &lit),
         ("diffuse", &lit),
         ("array<Branch", &|_| false),
-        ("mirror.beam.dir =", &|i| matches!(i, Mirror | Glint)),
+        ("mirror.ray.dir =", &|i| matches!(i, Mirror | Glint)),
         ("through.weight", &|i| i == Glass),
         ("power(", &|i| i == Glint),
         ("partial", &|_| false),

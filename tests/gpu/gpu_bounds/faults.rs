@@ -3,10 +3,10 @@
 use plumb::gpu::device::Gpu;
 use plumb::shader::pack::Packed;
 
-use super::primary::Picture;
-use super::support::{Seen, with_constant};
+use super::primary::SampledPicture;
+use super::support::{BoundStatistics, with_constant};
 use super::surfaces;
-use super::world::{self, Beams, World};
+use super::world::{self, RayErrors, World};
 
 /// Operands for each fault.
 const COUNT: usize = 1 << 16;
@@ -20,7 +20,7 @@ pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
             gpu,
             &world,
             &zero(name),
-            Beams::Exact,
+            RayErrors::Exact,
             COUNT,
             [name; 2],
         ))
@@ -30,7 +30,7 @@ pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
             gpu,
             &world,
             &zero(name),
-            Beams::Exact,
+            RayErrors::Exact,
             COUNT,
             [name; 3],
         ))
@@ -84,14 +84,14 @@ pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
 
 /// The same for primary rays: constants, and bounds in records.
 pub(crate) fn literal(gpu: &Gpu) -> Vec<(&'static str, usize)> {
-    let picture = || Picture::all().remove(1);
+    let picture = || SampledPicture::all().remove(1);
     let mut found = Vec::new();
     for (i, name) in ["W_ERROR", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"]
         .into_iter()
         .enumerate()
     {
         let picture = picture();
-        let mut seen = [name; 4].map(Seen::new);
+        let mut seen = [name; 4].map(BoundStatistics::new);
         picture.camera(
             gpu,
             &with_constant(&picture.world.wgsl, name, "0f"),
@@ -103,7 +103,7 @@ pub(crate) fn literal(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let mut planes = |name, fault: fn(&mut Packed), kind: usize| {
         let mut picture = picture();
         fault(&mut picture.world.packed);
-        let mut seen = [name; 3].map(Seen::new);
+        let mut seen = [name; 3].map(BoundStatistics::new);
         picture.planes(gpu, &picture.world.wgsl, COUNT, &mut seen);
         found.push((name, seen[kind].violations()));
     };
@@ -129,7 +129,7 @@ pub(crate) fn literal(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let mut spheres = |name, fault: fn(&mut Packed), kind: usize| {
         let mut picture = picture();
         fault(&mut picture.world.packed);
-        let mut seen = [name; 2].map(Seen::new);
+        let mut seen = [name; 2].map(BoundStatistics::new);
         picture.spheres(gpu, &picture.world.wgsl, COUNT, &mut seen);
         found.push((name, seen[kind].violations()));
     };
@@ -151,6 +151,6 @@ pub(crate) fn literal(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     found
 }
 
-fn total(seen: &[Seen]) -> usize {
-    seen.iter().map(Seen::violations).sum()
+fn total(seen: &[BoundStatistics]) -> usize {
+    seen.iter().map(BoundStatistics::violations).sum()
 }

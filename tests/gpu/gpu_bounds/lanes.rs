@@ -1,9 +1,9 @@
 //! The GPU's arithmetic on the CPU: what it is sure of is right, and it is sure of nearly all.
 
 use plumb::certify::lanes::{LANES, Lanes};
-use plumb::cpu::pixel::Stages;
+use plumb::cpu::pixel::ExactTracer;
 use plumb::jitter::Sampling;
-use plumb::prepare::View;
+use plumb::prepare::ViewParameters;
 use plumb::render::Settings;
 use plumb::shader::pack::Packed;
 
@@ -24,8 +24,9 @@ fn count(change: fn(&mut Packed)) -> (Count, usize) {
         if !scene.lights.is_empty() {
             continue;
         }
-        let stages = Stages::new(&scene, View::from(settings.screen_tolerance));
-        let mut packed = Packed::prepared(stages.bounded(), &scene, &settings);
+        let exact_tracer =
+            ExactTracer::new(&scene, ViewParameters::from(settings.screen_tolerance));
+        let mut packed = Packed::prepared(exact_tracer.bounded(), &scene, &settings);
         change(&mut packed);
         let Some(lanes) = Lanes::of(packed) else {
             continue;
@@ -39,7 +40,7 @@ fn count(change: fn(&mut Packed)) -> (Count, usize) {
                     if !eight.sure[lane] {
                         continue;
                     }
-                    let exact = stages.trace(&limits, Sampling::Once, x, y).unwrap();
+                    let exact = exact_tracer.trace(&limits, Sampling::Once, x, y).unwrap();
                     count.sure += 1;
                     count.wrong += usize::from(eight.bytes[lane] != exact.bytes);
                 }

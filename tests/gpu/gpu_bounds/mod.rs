@@ -19,9 +19,9 @@ use plumb::gpu::device::Gpu;
 use plumb::render::Backend;
 
 use pictures::{Count, Fault};
-use primary::Picture;
-use support::Seen;
-use world::{Beams, World};
+use primary::SampledPicture;
+use support::BoundStatistics;
+use world::{RayErrors, World};
 
 use crate::common;
 
@@ -44,36 +44,39 @@ fn rays_from_anywhere() {
     let wgsl = &world.wgsl;
     let exact = [
         "plane_hits_from, exact ray",
-        "locate_met on planes, exact ray",
+        "locate_secondary on planes, exact ray",
     ];
-    let off = ["plane_hits_from, ray off", "locate_met on planes, ray off"];
-    let planes = |beams, names| world::planes(&gpu, &world, wgsl, beams, MANY, names);
-    let mut sure = Vec::from(planes(Beams::Exact, exact));
-    let mut wide = Vec::from(planes(Beams::Off, off));
+    let off = [
+        "plane_hits_from, ray off",
+        "locate_secondary on planes, ray off",
+    ];
+    let planes = |errors, names| world::planes(&gpu, &world, wgsl, errors, MANY, names);
+    let mut sure = Vec::from(planes(RayErrors::Exact, exact));
+    let mut wide = Vec::from(planes(RayErrors::Off, off));
     let exact = [
         "sphere_hits_from, exact ray",
-        "sphere_met, exact ray",
-        "locate_met on spheres, exact ray",
+        "sphere_normal_from, exact ray",
+        "locate_secondary on spheres, exact ray",
     ];
     let off = [
         "sphere_hits_from, ray off",
-        "sphere_met, ray off",
-        "locate_met on spheres, ray off",
+        "sphere_normal_from, ray off",
+        "locate_secondary on spheres, ray off",
     ];
-    let spheres = |beams, names| world::spheres(&gpu, &world, wgsl, beams, MANY, names);
-    sure.extend(spheres(Beams::Exact, exact));
-    wide.extend(spheres(Beams::Off, off));
+    let spheres = |errors, names| world::spheres(&gpu, &world, wgsl, errors, MANY, names);
+    sure.extend(spheres(RayErrors::Exact, exact));
+    wide.extend(spheres(RayErrors::Off, off));
     let wild = [
         "plane_hits_from, ray far off",
-        "locate_met on planes, ray far off",
+        "locate_secondary on planes, ray far off",
     ];
-    let mut far = Vec::from(planes(Beams::Wild, wild));
+    let mut far = Vec::from(planes(RayErrors::Wild, wild));
     let wild = [
         "sphere_hits_from, ray far off",
-        "sphere_met, ray far off",
-        "locate_met on spheres, ray far off",
+        "sphere_normal_from, ray far off",
+        "locate_secondary on spheres, ray far off",
     ];
-    far.extend(spheres(Beams::Wild, wild));
+    far.extend(spheres(RayErrors::Wild, wild));
     for seen in sure {
         seen.judge(DECIDED, TIGHT);
     }
@@ -89,10 +92,11 @@ fn rays_from_anywhere() {
 #[test]
 fn primary_rays() {
     let gpu = support::open();
-    let mut camera = ["W_ERROR", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"].map(Seen::new);
-    let mut planes = ["plane_hits", "rectangle_hits", "locate on planes"].map(Seen::new);
-    let mut spheres = ["sphere_hits", "sphere_normal"].map(Seen::new);
-    for picture in Picture::all() {
+    let mut camera =
+        ["W_ERROR", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"].map(BoundStatistics::new);
+    let mut planes = ["plane_hits", "rectangle_hits", "locate on planes"].map(BoundStatistics::new);
+    let mut spheres = ["sphere_hits", "sphere_normal"].map(BoundStatistics::new);
+    for picture in SampledPicture::all() {
         let wgsl = &picture.world.wgsl;
         picture.camera(&gpu, wgsl, MANY / 2, &mut camera);
         picture.planes(&gpu, wgsl, MANY / 2, &mut planes);

@@ -8,7 +8,7 @@ use plumb::shader::compose::{Entry, compose};
 use plumb::shader::constants::WORKGROUP;
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
-use plumb::shader::records::Job;
+use plumb::shader::records::Dispatch;
 use wgpu::util::DeviceExt as _;
 
 use super::support::with_constant;
@@ -17,7 +17,7 @@ use super::support::with_constant;
 pub(crate) fn without_literal_bounds(packed: &mut Packed) {
     packed.camera.w_error = 0.0;
     // The lengths', directions' and values' errors are multiples of it.
-    packed.camera.spread = 0.0;
+    packed.camera.condition = 0.0;
     for plane in &mut packed.planes {
         (plane.inverse_error, plane.front_error) = (0.0, 0.0);
     }
@@ -112,17 +112,17 @@ pub(crate) fn count(
     let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl).unwrap();
     let [width, height] = scene.camera.pixeldim;
     let pitch = width.next_multiple_of(pipeline.across);
-    let job = Job {
+    let dispatch = Dispatch {
         first: [0, height - 1],
         size: [width, height],
         zero: 0,
         room: 0,
     };
-    let job = gpu
+    let dispatch = gpu
         .device
         .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("job"),
-            contents: bytemuck::bytes_of(&job),
+            label: Some("dispatch"),
+            contents: bytemuck::bytes_of(&dispatch),
             usage: wgpu::BufferUsages::UNIFORM,
         });
     let size = u64::from(pitch) * u64::from(height) * 4;
@@ -132,7 +132,7 @@ pub(crate) fn count(
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let group = pipeline.bind(gpu, &job, &pixels, None);
+    let group = pipeline.bind(gpu, &dispatch, &pixels, None);
     let groups = [pitch / pipeline.across, height].map(|n| n.div_ceil(WORKGROUP));
     let left = gpu
         .run_once(&pipeline.pipeline, &group, groups, &pixels)

@@ -3,10 +3,10 @@
 use glam::{DVec2, DVec3};
 use plumb::gpu::device::Gpu;
 use plumb::prepare;
-use plumb::render::{Settings, Spread};
+use plumb::render::{SamplePattern, Settings};
 use plumb::scene::{Camera, Extent, Rectangle, Scene, Shape, Surface};
 
-use super::support::{Rng, Seen, run};
+use super::support::{BoundStatistics, Rng, run};
 use super::world::{World, materials, object};
 
 /// A scene without lights, of planes, rectangles and spheres of all sizes, that are too many for the shader's text.
@@ -56,10 +56,10 @@ fn scene(rng: &mut Rng, camera: Camera) -> Scene {
 }
 
 /// A picture whose rays pass through the pixels' middles, on a lattice, or anywhere.
-pub(crate) struct Picture {
+pub(crate) struct SampledPicture {
     pub(crate) world: World,
     samples: u32,
-    spread: Spread,
+    pattern: SamplePattern,
     unit: f64,
 }
 
@@ -82,18 +82,18 @@ fn is_inside(extent: &Extent, normal: DVec3, from_corner: DVec3) -> bool {
     }
 }
 
-impl Picture {
-    fn new(camera: Camera, samples: u32, spread: Spread, seed: u64) -> Self {
+impl SampledPicture {
+    fn new(camera: Camera, samples: u32, pattern: SamplePattern, seed: u64) -> Self {
         let settings = Settings {
             samples,
-            jitter: spread,
+            jitter: pattern,
             ..Settings::default()
         };
         let unit = 2.0_f64.powi(prepare::Camera::<f64>::new(&camera).scale);
         Self {
             world: World::of(scene(&mut Rng(seed), camera), &settings),
             samples,
-            spread,
+            pattern,
             unit,
         }
     }
@@ -110,19 +110,19 @@ impl Picture {
             Self::new(
                 camera([640, 480], [8.0, 6.0], [3.7, 2.9, 6.3]),
                 1,
-                Spread::Hash,
+                SamplePattern::Hash,
                 11,
             ),
             Self::new(
                 camera([1920, 1080], [16.0, 9.0], [-7.3, 11.1, 5.9]),
                 4,
-                Spread::Course,
+                SamplePattern::Course,
                 12,
             ),
             Self::new(
                 camera([311, 177], [3.1, 1.9], [1.7, 0.4, 0.7]),
                 4,
-                Spread::Hash,
+                SamplePattern::Hash,
                 13,
             ),
         ]
@@ -133,10 +133,10 @@ impl Picture {
         let most = self.world.scene.camera.pixeldim.map(|n| f64::from(n - 1));
         let pixel = at.round().clamp(DVec2::ZERO, DVec2::from_array(most));
         let offset = (at - pixel).clamp(DVec2::splat(-0.5), DVec2::splat(0.499));
-        let offset = match (self.samples, self.spread) {
+        let offset = match (self.samples, self.pattern) {
             (1, _) => DVec2::ZERO,
-            (_, Spread::Hash) => (offset * 1024.0).round() / 1024.0,
-            (_, Spread::Course) => offset,
+            (_, SamplePattern::Hash) => (offset * 1024.0).round() / 1024.0,
+            (_, SamplePattern::Course) => offset,
         };
         let told = offset.to_array().map(|x| x as f32);
         (pixel.to_array().map(|p| p as i32), offset, told)
@@ -191,7 +191,13 @@ impl Picture {
     }
 
     /// W, its length, its direction, and the value of an ambient colour.
-    pub(crate) fn camera(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 4]) {
+    pub(crate) fn camera(
+        &self,
+        gpu: &Gpu,
+        wgsl: &str,
+        count: usize,
+        seen: &mut [BoundStatistics; 4],
+    ) {
         const LINE: &str = "traced.color = ambient.color * (share * hit.inverse);";
         assert!(wgsl.contains(LINE), "the value is no longer made so");
         let (items, rays) = self.rays(count, |rng, _| self.anywhere(rng));
@@ -255,7 +261,13 @@ impl Picture {
     }
 
     /// Planes and rectangles, and points on them.
-    pub(crate) fn planes(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 3]) {
+    pub(crate) fn planes(
+        &self,
+        gpu: &Gpu,
+        wgsl: &str,
+        count: usize,
+        seen: &mut [BoundStatistics; 3],
+    ) {
         let packed = &self.world.packed;
         let planes = packed.planes.iter().map(|p| p.object);
         let rectangles = packed.rectangles.iter().map(|r| r.object);
@@ -308,7 +320,13 @@ impl Picture {
     }
 
     /// Spheres, and their normals where they are hit for sure.
-    pub(crate) fn spheres(&self, gpu: &Gpu, wgsl: &str, count: usize, seen: &mut [Seen; 2]) {
+    pub(crate) fn spheres(
+        &self,
+        gpu: &Gpu,
+        wgsl: &str,
+        count: usize,
+        seen: &mut [BoundStatistics; 2],
+    ) {
         let packed = &self.world.packed;
         let n = packed.spheres.len();
         let camera = &self.world.scene.camera;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use plumb::gpu::adapters;
 use plumb::gpu::device::Gpu;
-use plumb::shader::bounds::up;
-use plumb::shader::records::Job;
+use plumb::shader::bounds::round_up;
+use plumb::shader::records::Dispatch;
 use wgpu::util::DeviceExt as _;
 
 /// SplitMix64.
@@ -60,14 +60,14 @@ pub(crate) fn rounded(v: DVec3) -> ([f32; 3], DVec3) {
 }
 
 /// A ray as it truly is, and as the shader is told about it.
-pub(crate) struct TrueBeam {
+pub(crate) struct TrueRay {
     pub(crate) base: DVec3,
     pub(crate) dir: DVec3,
     /// base, a number that is free, dir, base_error, dir_error, size.
     pub(crate) told: [f32; 12],
 }
 
-impl TrueBeam {
+impl TrueRay {
     /// The shader is told a ray that is off by `errors` (base, direction) toward `way`, and bounds that are `slack` times
     /// as large. Without an error the base is one that f32 has.
     pub(crate) fn new(
@@ -85,8 +85,8 @@ impl TrueBeam {
         let dir = dir.normalize();
         let (told_base, near_base) = rounded(base + errors[0] * ways[0]);
         let (told_dir, near_dir) = rounded(dir + errors[1] * ways[1]);
-        let base_error = up((near_base - base).length() * slack);
-        let dir_error = up((near_dir - dir).length() * slack);
+        let base_error = round_up((near_base - base).length() * slack);
+        let dir_error = round_up((near_dir - dir).length() * slack);
         let size = told_base.iter().map(|x| x.abs()).sum();
         let ([a, b, c], [d, e, f]) = (told_base, told_dir);
         Self {
@@ -96,7 +96,7 @@ impl TrueBeam {
         }
     }
 
-    /// One of the ways in which beams are off: a little, or (`wild`) as far as a ray to a light may be.
+    /// One of the ways in which rays are off: a little, or (`wild`) as far as a ray to a light may be.
     pub(crate) fn off(rng: &mut Rng, base: DVec3, dir: DVec3, hint: DVec3, wild: bool) -> Self {
         let [b, d] = [0; 2].map(|_| {
             let way = [rng.unit(), hint * rng.sign(), dir * rng.sign()];
@@ -162,7 +162,7 @@ pub(crate) fn run(
 @group(0) @binding(100) var<storage, read> items: array<vec4f>;
 @group(0) @binding(101) var<storage, read_write> answers: array<vec4f>;
 @compute @workgroup_size(64) fn test(@builtin(global_invocation_id) id: vec3u) {{
-    let i = id.x + job.zero;
+    let i = id.x + dispatch.zero;
     if i >= {count}u {{
         return;
     }}
@@ -188,10 +188,10 @@ pub(crate) fn run(
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let job = job();
+    let dispatch = dispatch();
     let mut buffers: Vec<(u32, wgpu::Buffer)> = inputs
         .iter()
-        .chain([&(0, job.as_slice())])
+        .chain([&(0, dispatch.as_slice())])
         .map(|(binding, bytes)| {
             let usage = if *binding == 0 {
                 wgpu::BufferUsages::UNIFORM
@@ -218,18 +218,18 @@ pub(crate) fn run(
 }
 
 /// What `barrier` asks for.
-fn job() -> Vec<u8> {
-    let job = Job {
+fn dispatch() -> Vec<u8> {
+    let dispatch = Dispatch {
         first: [0; 2],
         size: [1; 2],
         zero: 0,
         room: 0,
     };
-    bytemuck::bytes_of(&job).to_vec()
+    bytemuck::bytes_of(&dispatch).to_vec()
 }
 
 /// What was seen of one quantity.
-pub(crate) struct Seen {
+pub(crate) struct BoundStatistics {
     name: &'static str,
     /// |value − true| / bound.
     ratios: Vec<f64>,
@@ -239,7 +239,7 @@ pub(crate) struct Seen {
     open: usize,
 }
 
-impl Seen {
+impl BoundStatistics {
     pub(crate) fn new(name: &'static str) -> Self {
         Self {
             name,

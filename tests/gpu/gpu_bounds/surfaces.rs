@@ -5,9 +5,9 @@ use plumb::gpu::device::Gpu;
 use plumb::prepare::extent::rows;
 use plumb::real::V3;
 use plumb::scene::{Object, Shape, Surface};
-use plumb::shader::bounds::up;
+use plumb::shader::bounds::round_up;
 
-use super::support::{Rng, Seen, rounded, run};
+use super::support::{BoundStatistics, Rng, rounded, run};
 use super::world::{UNIT, VIEWPOINT, World};
 
 /// The text is there for the entry point of the test to repeat it: else the test tests nothing.
@@ -31,7 +31,7 @@ fn point(rng: &mut Rng, items: &mut Vec<f32>, number: usize) -> DVec3 {
                 rng.log(-7.0, -2.0)
             };
     items.extend(told);
-    items.push(up((near - truth).length()));
+    items.push(round_up((near - truth).length()));
     truth
 }
 
@@ -62,7 +62,7 @@ fn apart(found: f64, truth: f64, period: f64) -> f64 {
 }
 
 /// Notes an index that may decide something: bounds from ½ up never do.
-fn index(seen: &mut Seen, off: f64, bound: f64) {
+fn index(seen: &mut BoundStatistics, off: f64, bound: f64) {
     if bound < 0.5 {
         seen.error(off, bound);
     } else {
@@ -71,12 +71,12 @@ fn index(seen: &mut Seen, off: f64, bound: f64) {
 }
 
 /// Indices of tiles.
-pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen; 2] {
+pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [BoundStatistics; 2] {
     assert_has(
         wgsl,
         &[
             "let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);",
-            "var clear = abs(index - round(index)) - (plane.spread * index_error(point) + plane.errors);",
+            "var margin = abs(index - round(index)) - (plane.row_lengths * index_error(point) + plane.errors);",
         ],
     );
     let objects = modulated(world, 1);
@@ -89,7 +89,7 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen
     let plane = tiled_planes[i % {n}u];
     let position = point.position;
     let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
-    answers[i] = vec4f(index, plane.spread * index_error(point) + plane.errors);"
+    answers[i] = vec4f(index, plane.row_lengths * index_error(point) + plane.errors);"
     );
     let records = &world.packed.tiled_planes;
     assert_eq!(records.len(), objects.len());
@@ -99,7 +99,7 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen
         "index of a tile, exact point",
         "index of a tile, point is off",
     ]
-    .map(Seen::new);
+    .map(BoundStatistics::new);
     for (i, (answer, p)) in answers.iter().zip(points).enumerate() {
         let (
             Surface::Tiled {
@@ -119,8 +119,8 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen
             Some(xdir) => {
                 let rows: [V3<f64>; 2] = rows(*normal, xdir);
                 [
-                    (rows[0].approx().dot(hit) + 10_000.0) / dimension.x,
-                    (rows[1].approx().dot(hit) + 10_000.0) / dimension.y,
+                    (rows[0].to_f64().dot(hit) + 10_000.0) / dimension.x,
+                    (rows[1].to_f64().dot(hit) + 10_000.0) / dimension.y,
                 ]
             }
         };
@@ -142,12 +142,17 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Seen
 }
 
 /// Indices of blocks, and the components of H − point.
-pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [[Seen; 2]; 2] {
+pub(crate) fn blocks(
+    gpu: &Gpu,
+    world: &World,
+    wgsl: &str,
+    count: usize,
+) -> [[BoundStatistics; 2]; 2] {
     assert_has(
         wgsl,
         &[
             "let index = at.point.position * at.plane.per_unit + at.plane.fraction;",
-            "var clear = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);",
+            "var margin = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);",
         ],
     );
     let objects = modulated(world, 64 + 2);
@@ -178,7 +183,7 @@ pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [[Se
             "pplane_from_point, point is off",
         ],
     ]
-    .map(|names| names.map(Seen::new));
+    .map(|names| names.map(BoundStatistics::new));
     for (i, (answer, p)) in answers.chunks(3).zip(points).enumerate() {
         let record = &records[i % n];
         let hit = p * UNIT + VIEWPOINT;
@@ -202,7 +207,7 @@ pub(crate) fn blocks(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [[Se
 }
 
 /// The colour wheel, at components that are off by as much as they may be, or are exact.
-pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
+pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [BoundStatistics; 2] {
     let (mut rng, mut items) = (Rng(8), Vec::new());
     let truth: Vec<_> = (0..count)
         .map(|i| {
@@ -228,7 +233,8 @@ pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
     answers[2u * i] = vec4f(shade.color, select(0.0, 1.0, doubt));
     answers[2u * i + 1u] = vec4f(shade.error, 0.0);";
     let answers = run(gpu, wgsl, body, &items, &[], count, 2);
-    let mut seen = ["color_wheel, exact place", "color_wheel, place is off"].map(Seen::new);
+    let mut seen =
+        ["color_wheel, exact place", "color_wheel, place is off"].map(BoundStatistics::new);
     for (i, (answer, [x, y])) in answers.chunks(2).zip(truth).enumerate() {
         let seen = &mut seen[i % 2];
         if answer[0][3] == 1.0 {
@@ -254,7 +260,7 @@ pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
 }
 
 /// The glint's power of a cosine that is off by as much as it may be, or nearly exact.
-pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
+pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [BoundStatistics; 2] {
     assert_has(
         wgsl,
         &[
@@ -288,7 +294,7 @@ pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [Seen; 2] {
     let error = glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
     answers[i] = vec4f(glint, error, select(0.0, 1.0, cosine > -cosine_error), 0.0);";
     let answers = run(gpu, wgsl, body, &items, &[], count, 1);
-    let mut seen = ["power, exact cosine", "power, cosine is off"].map(Seen::new);
+    let mut seen = ["power, exact cosine", "power, cosine is off"].map(BoundStatistics::new);
     for (i, (answer, truth)) in answers.iter().zip(truth).enumerate() {
         let [glint, error, counts, _] = answer.map(f64::from);
         if counts == 0.0 {

@@ -8,7 +8,7 @@ use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
 
-use super::support::{Rng, Seen, TrueBeam, run};
+use super::support::{BoundStatistics, Rng, TrueRay, run};
 
 pub(crate) const VIEWPOINT: DVec3 = DVec3::new(3.7, 2.9, 6.3);
 /// Lengths on the GPU are in units of the power of two next below the viewpoint's z.
@@ -189,21 +189,23 @@ fn true_plane(shape: &Shape) -> TruePlane {
 
 /// Rays that are known to be where they are; that are off by as much as they may be; by up to a third of a radian.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Beams {
+pub(crate) enum RayErrors {
     Exact,
     Off,
     Wild,
 }
 
-fn beam(rng: &mut Rng, beams: Beams, base: DVec3, dir: DVec3, hint: DVec3) -> TrueBeam {
-    match beams {
-        Beams::Exact => TrueBeam::exact(base, dir),
-        Beams::Off | Beams::Wild => TrueBeam::off(rng, base, dir, hint, beams == Beams::Wild),
+fn ray(rng: &mut Rng, errors: RayErrors, base: DVec3, dir: DVec3, hint: DVec3) -> TrueRay {
+    match errors {
+        RayErrors::Exact => TrueRay::exact(base, dir),
+        RayErrors::Off | RayErrors::Wild => {
+            TrueRay::off(rng, base, dir, hint, errors == RayErrors::Wild)
+        }
     }
 }
 
 /// A ray to the plane: steep or grazing, to its middle or to its edges, from near or far, or away from it.
-fn toward_plane(rng: &mut Rng, plane: &TruePlane, beams: Beams) -> TrueBeam {
+fn toward_plane(rng: &mut Rng, plane: &TruePlane, errors: RayErrors) -> TrueRay {
     let target = plane.point
         + match plane.sides {
             None => {
@@ -227,7 +229,7 @@ fn toward_plane(rng: &mut Rng, plane: &TruePlane, beams: Beams) -> TrueBeam {
     }
     let dir = dir.normalize();
     let distance = rng.log(-3.0, 2.5) * if rng.chance(0.85) { 1.0 } else { -1.0 };
-    beam(rng, beams, target - dir * distance, dir, plane.normal)
+    ray(rng, errors, target - dir * distance, dir, plane.normal)
 }
 
 const CALL: &str = "
@@ -235,29 +237,29 @@ const CALL: &str = "
     let b = items[3u * i + 1u];
     let c = items[3u * i + 2u];
     let record = bitcast<u32>(a.w);
-    let beam = Beam(a.xyz, b.xyz, b.w, c.x, c.y);
+    let ray = SecondaryRay(a.xyz, b.xyz, b.w, c.x, c.y);
     let range = Range(NOTHING, 0u, 0.0, T_MAX, 0.0, 0.0);
 ";
 
-const MEETING: &str = "
+const INTERSECTION: &str = "
     answers[4u * i] = vec4f(m.t, m.error, m.low, m.high);
     answers[4u * i + 1u] = vec4f(select(0.0, 1.0, m.hit), select(0.0, 1.0, m.possible), 0.0, 0.0);
-    var met: Met;
-    met.t = m.t;
-    met.error = m.error;
-    met.object = object;
-    let p = locate_met(beam, met);
+    var hit: SecondaryHit;
+    hit.t = m.t;
+    hit.error = m.error;
+    hit.object = object;
+    let p = locate_secondary(ray, hit);
     answers[4u * i + 3u] = vec4f(p.position, p.error);
 ";
 
-fn told(items: &mut Vec<f32>, beam: &TrueBeam, record: usize) {
+fn told(items: &mut Vec<f32>, ray: &TrueRay, record: usize) {
     let start = items.len();
-    items.extend(beam.told);
+    items.extend(ray.told);
     items[start + 3] = f32::from_bits(record as u32);
 }
 
-/// A meeting that the shader claims, against whether and where the ray truly meets the surface.
-fn judge(seen: &mut Seen, answers: &[[f32; 4]], hits: bool, t: f64) -> bool {
+/// An intersection that the shader claims, against whether and where the ray truly meets the surface.
+fn judge(seen: &mut BoundStatistics, answers: &[[f32; 4]], hits: bool, t: f64) -> bool {
     let [found, error, low, high] = answers[0].map(f64::from);
     let [sure, possible, ..] = answers[1].map(|flag| flag == 1.0);
     seen.decision(sure, possible, hits);
@@ -271,12 +273,12 @@ fn judge(seen: &mut Seen, answers: &[[f32; 4]], hits: bool, t: f64) -> bool {
 }
 
 /// Where the shader says that a ray meets a surface.
-fn place(seen: &mut Seen, answer: [f32; 4], truth: DVec3) {
+fn place(seen: &mut BoundStatistics, answer: [f32; 4], truth: DVec3) {
     let [x, y, z, error] = answer.map(f64::from);
     seen.error((DVec3::new(x, y, z) - truth).length(), error);
 }
 
-/// What the shader makes a point of a meeting with.
+/// What the shader makes a point of an intersection with.
 fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     let lit = world.packed.lit.as_ref().unwrap();
     [
@@ -286,15 +288,15 @@ fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     ]
 }
 
-/// Meetings with planes and rectangles, and where they are, where they are certain.
+/// Intersections with planes and rectangles, and where they are, where they are certain.
 pub(crate) fn planes(
     gpu: &Gpu,
     world: &World,
     wgsl: &str,
-    beams: Beams,
+    errors: RayErrors,
     count: usize,
     names: [&'static str; 2],
-) -> [Seen; 2] {
+) -> [BoundStatistics; 2] {
     let records = &world.packed.lit.as_ref().unwrap().planes;
     let truth: Vec<_> = records
         .iter()
@@ -305,22 +307,22 @@ pub(crate) fn planes(
     let rays: Vec<_> = (0..count)
         .map(|i| {
             let record = i % records.len();
-            let beam = toward_plane(&mut rng, &truth[record], beams);
-            told(&mut items, &beam, record);
-            beam
+            let ray = toward_plane(&mut rng, &truth[record], errors);
+            told(&mut items, &ray, record);
+            ray
         })
         .collect();
     let body = format!(
-        "{CALL}let m = plane_hits_from(world_planes[record], beam, range);
-    let object = world_planes[record].object;{MEETING}"
+        "{CALL}let m = plane_hits_from(world_planes[record], ray, range);
+    let object = world_planes[record].object;{INTERSECTION}"
     );
     let inputs = inputs(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
-    let [mut seen, mut points] = names.map(Seen::new);
-    for (i, beam) in rays.iter().enumerate() {
+    let [mut seen, mut points] = names.map(BoundStatistics::new);
+    for (i, ray) in rays.iter().enumerate() {
         let plane = &truth[i % records.len()];
-        let t = plane.normal.dot(plane.point - beam.base) / plane.normal.dot(beam.dir);
-        let hit = beam.base + t * beam.dir;
+        let t = plane.normal.dot(plane.point - ray.base) / plane.normal.dot(ray.dir);
+        let hit = ray.base + t * ray.dir;
         let axis = plane.normal.abs().max_element() == 1.0 && plane.normal.z != 0.0;
         let inside = plane.sides.is_none_or(|(rows, lengths)| {
             let from = hit - plane.point;
@@ -336,7 +338,7 @@ pub(crate) fn planes(
 }
 
 /// A ray past the sphere's middle, or past its edge, from near or far, from inside, from the sphere itself.
-fn toward_sphere(rng: &mut Rng, center: DVec3, radius: f64, beams: Beams) -> TrueBeam {
+fn toward_sphere(rng: &mut Rng, center: DVec3, radius: f64, errors: RayErrors) -> TrueRay {
     let dir = rng.unit();
     let across = dir.cross(rng.unit()).normalize();
     let apart = match rng.below(8) {
@@ -352,18 +354,18 @@ fn toward_sphere(rng: &mut Rng, center: DVec3, radius: f64, beams: Beams) -> Tru
         _ => rng.log(-2.0, 2.5) + radius,
     };
     let base = center + across * apart * radius - dir * far;
-    beam(rng, beams, base, dir, across)
+    ray(rng, errors, base, dir, across)
 }
 
-/// Meetings with spheres, and the normals and places where they are certain.
+/// Intersections with spheres, and the normals and places where they are certain.
 pub(crate) fn spheres(
     gpu: &Gpu,
     world: &World,
     wgsl: &str,
-    beams: Beams,
+    errors: RayErrors,
     count: usize,
     names: [&'static str; 3],
-) -> [Seen; 3] {
+) -> [BoundStatistics; 3] {
     let records = &world.packed.lit.as_ref().unwrap().spheres;
     let truth: Vec<_> = records
         .iter()
@@ -377,33 +379,38 @@ pub(crate) fn spheres(
     let rays: Vec<_> = (0..count)
         .map(|i| {
             let (center, radius) = truth[i % records.len()];
-            let beam = toward_sphere(&mut rng, center, radius, beams);
-            told(&mut items, &beam, i % records.len());
-            beam
+            let ray = toward_sphere(&mut rng, center, radius, errors);
+            told(&mut items, &ray, i % records.len());
+            ray
         })
         .collect();
     let body = format!(
-        "{CALL}let m = sphere_hits_from(world_spheres[record], beam, range);
-    let object = world_spheres[record].object;{MEETING}
-    answers[4u * i + 2u] = sphere_met(world_spheres[record], beam);"
+        "{CALL}let m = sphere_hits_from(world_spheres[record], ray, range);
+    let object = world_spheres[record].object;{INTERSECTION}
+    answers[4u * i + 2u] = sphere_normal_from(world_spheres[record], ray);"
     );
     let inputs = inputs(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
-    let [mut meetings, mut normals, mut points] = names.map(Seen::new);
-    for (i, beam) in rays.iter().enumerate() {
+    let [mut intersections, mut normals, mut points] = names.map(BoundStatistics::new);
+    for (i, ray) in rays.iter().enumerate() {
         let (center, radius) = truth[i % records.len()];
-        let to_center = center - beam.base;
-        let along = to_center.dot(beam.dir);
-        let apart = to_center - along * beam.dir;
+        let to_center = center - ray.base;
+        let along = to_center.dot(ray.dir);
+        let apart = to_center - along * ray.dir;
         let disc = (radius - apart.length()) * (radius + apart.length());
         let root = disc.max(0.0).sqrt();
         let t = along - root;
-        if judge(&mut meetings, &answers[4 * i..], disc > 0.0 && t > 0.0, t) {
-            let normal = -(apart + root * beam.dir) / radius;
+        if judge(
+            &mut intersections,
+            &answers[4 * i..],
+            disc > 0.0 && t > 0.0,
+            t,
+        ) {
+            let normal = -(apart + root * ray.dir) / radius;
             let [x, y, z, error] = answers[4 * i + 2].map(f64::from);
             normals.error((DVec3::new(x, y, z) - normal).length(), error);
-            place(&mut points, answers[4 * i + 3], beam.base + t * beam.dir);
+            place(&mut points, answers[4 * i + 3], ray.base + t * ray.dir);
         }
     }
-    [meetings, normals, points]
+    [intersections, normals, points]
 }

@@ -3,7 +3,7 @@
 use std::num::Wrapping;
 
 use dashu_ratio::RBig;
-use plumb::render::Spread;
+use plumb::render::SamplePattern;
 
 /// The offsets of the samples of one pixel.
 pub(crate) type Offsets = Vec<[RBig; 2]>;
@@ -17,9 +17,9 @@ pub(crate) struct Jitter {
 }
 
 impl Jitter {
-    pub(crate) fn new([width, height]: [u32; 2], samples: u32, spread: Spread) -> Self {
+    pub(crate) fn new([width, height]: [u32; 2], samples: u32, pattern: SamplePattern) -> Self {
         let mut course = Vec::new();
-        if samples > 1 && spread == Spread::Course {
+        if samples > 1 && pattern == SamplePattern::Course {
             let count = 2 * width as usize * height as usize * samples as usize;
             course = random(count)
                 .into_iter()

@@ -28,7 +28,7 @@ mod world;
 
 use std::ops::AddAssign;
 
-use plumb::render::{Backend, Report, Settings, Spread};
+use plumb::render::{Backend, Report, SamplePattern, Settings};
 use plumb::scene::Scene;
 use rayon::prelude::*;
 
@@ -60,7 +60,7 @@ pub(crate) struct Rules {
     /// Most mirrors that a ray may have met.
     pub(crate) max_mirrors: u32,
     pub(crate) samples: u32,
-    pub(crate) spread: Spread,
+    pub(crate) pattern: SamplePattern,
     /// Bits that every number is evaluated in at once.
     pub(crate) first_bits: usize,
     /// A rule broken on purpose, to see that it shows.
@@ -94,7 +94,7 @@ impl From<&Settings> for Rules {
             max_rays: settings.limits.max_rays,
             max_mirrors: u32::MAX,
             samples: settings.samples,
-            spread: settings.jitter,
+            pattern: settings.jitter,
             first_bits: real::FIRST,
             fault: None,
         }
@@ -136,7 +136,7 @@ pub(crate) fn picture(scene: &Scene, rules: &Rules) -> Answer {
 
 /// Some pixels, each as column and row from the bottom.
 pub(crate) fn pixels_of(scene: &Scene, rules: &Rules, pixels: &[[u32; 2]]) -> Answer {
-    let jitter = Jitter::new(scene.camera.pixeldim, rules.samples, rules.spread);
+    let jitter = Jitter::new(scene.camera.pixeldim, rules.samples, rules.pattern);
     let work = |part: &[[u32; 2]]| {
         real::evaluate_first_in(rules.first_bits);
         let world = World::new(scene, rules);

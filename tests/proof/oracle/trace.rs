@@ -210,7 +210,8 @@ impl World<'_> {
                 return Ok(None);
             }
         }
-        let Some(filter) = self.shadow(&hit.point, &to_lamp, &lamp.location, hit.object)? else {
+        let Some(transmittance) = self.shadow(&hit.point, &to_lamp, &lamp.location, hit.object)?
+        else {
             return Ok(None);
         };
         // E·c/dist = E·(L·N)/(|N|·L·L)
@@ -219,7 +220,7 @@ impl World<'_> {
         let mut term = self
             .diffuse(body, &hit.point)?
             .times(&lamp.emissivity)
-            .times(&filter)
+            .times(&transmittance)
             .scale(&light);
         let material = &self.scene.materials[body.object.material];
         if material.shininess != 0.0 && material.specular != glam::DVec3::ZERO {
@@ -251,7 +252,7 @@ impl World<'_> {
         lamp: &Vector,
         last: usize,
     ) -> Result<Option<Vector>, Failure> {
-        let mut filter = Vector::all(1);
+        let mut transmittance = Vector::all(1);
         for blocker in self.hits(from, to_lamp, Some(last), Some(lamp))? {
             let body = &self.bodies[blocker.object];
             if self.scene.materials[body.object.material].transparency == 0.0 {
@@ -259,11 +260,11 @@ impl World<'_> {
             }
             let tile = self.tile(body, &blocker.point)?;
             // E∘K·(k/max(K)) is E∘(k·K/max(K)).
-            filter = filter
+            transmittance = transmittance
                 .times(&tile.tint)
                 .scale(&self.stuff(body).transparency);
         }
-        Ok(Some(filter))
+        Ok(Some(transmittance))
     }
 }
 

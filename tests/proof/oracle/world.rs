@@ -84,12 +84,12 @@ pub(crate) struct Stuff {
 pub(crate) struct Lamp {
     pub(crate) location: Vector,
     pub(crate) emissivity: Vector,
-    pub(crate) cone: Option<Beam>,
+    pub(crate) cone: Option<Cone>,
 }
 
 /// What a spotlight lights.
 #[derive(Debug)]
-pub(crate) struct Beam {
+pub(crate) struct Cone {
     /// From the location to the point.
     pub(crate) axis: Vector,
     /// axis·axis.
@@ -128,7 +128,7 @@ impl<'s> World<'s> {
                         emissivity: Vector::from_f64(light.emissivity),
                         cone: light.cone.map(|cone| {
                             let axis = (&Vector::from_f64(cone.point) - &location).settled();
-                            Beam {
+                            Cone {
                                 square: axis.dot(&axis).settled(),
                                 axis,
                                 cosine: cosine_of(cone.theta),

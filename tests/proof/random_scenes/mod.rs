@@ -9,7 +9,7 @@ mod strategy;
 
 use std::time::Instant;
 
-use plumb::render::{Backend, Error, Settings, Spread, render};
+use plumb::render::{Backend, Error, SamplePattern, Settings, render};
 use plumb::scene::{Scene, parse};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -44,7 +44,7 @@ fn settings(plan: &Plan, backend: Backend) -> Settings {
     settings.limits.max_path = plan.max_path;
     settings.samples = plan.samples;
     if plan.course {
-        settings.jitter = Spread::Course;
+        settings.jitter = SamplePattern::Course;
     }
     settings
 }

@@ -1,6 +1,6 @@
-//! Which of many spheres a primary ray may hit, by the tile of the screen that it passes through. For both tracers.
+//! Which of many spheres a primary ray may hit, by the cell of the screen that it passes through. For both tracers.
 //!
-//! A sphere stands in the list of every tile that its outline's box touches. The lists run from the nearest sphere on, so
+//! A sphere stands in the list of every cell that its outline's box touches. The lists run from the nearest sphere on, so
 //! that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64 and are padded by
 //! far more than that errs: they only ever say "may be hit".
 
@@ -14,17 +14,17 @@ use super::sphere::Sphere;
 use crate::real::Real;
 use crate::real::rational::two_to;
 use crate::scene::{Scene, Shape};
-use crate::settings::View;
+use crate::settings::ViewParameters;
 
 /// From so many objects on a ray does not ask every sphere. (Fewer stand in the text of the GPU's shader.)
 pub const WORTHWHILE: usize = 33;
 
-/// Columns and rows of a tile, unless there would be too many tiles: a driver that is a CPU runs 8 pixels of a row as one
+/// Columns and rows of a cell, unless there would be too many cells: a driver that is a CPU runs 8 pixels of a row as one
 /// vector, and they should share a list.
 const SIDES: [u32; 2] = [8, 4];
 
-/// Most tiles.
-const MOST_TILES: u64 = 1 << 20;
+/// Most cells.
+const MOST_CELLS: u64 = 1 << 20;
 
 /// Most entries of all lists, beside eight for each sphere.
 const ENTRIES: u64 = 1 << 20;
@@ -39,23 +39,23 @@ const PAD_PIXELS: f64 = 1e-3;
 
 /// The lists.
 #[derive(Debug, Clone)]
-pub struct Tiles {
-    /// Columns and rows of a tile.
+pub struct ScreenGrid {
+    /// Columns and rows of a cell.
     pub sides: [u32; 2],
-    /// Number of tiles side by side, and one above the other.
+    /// Number of cells side by side, and one above the other.
     pub count: [u32; 2],
-    /// The list of tile i, counted by rows from the bottom left, is `members[starts[i]..starts[i + 1]]`.
+    /// The list of cell i, counted by rows from the bottom left, is `members[starts[i]..starts[i + 1]]`.
     pub starts: Vec<u32>,
     /// Places of the prepared spheres, in each list the nearest first.
     pub members: Vec<u32>,
     /// For each prepared sphere: its hits' 1/s are no larger.
-    pub most: Vec<f32>,
+    pub max_inverse: Vec<f32>,
 }
 
 /// The pixels that a sphere may cover: first and last column and row.
 type Covered = [[u32; 2]; 2];
 
-impl Tiles {
+impl ScreenGrid {
     /// The places of the spheres that a ray through this point of the screen may hit, in pixels from the bottom left. The
     /// nearest come first.
     pub fn at(&self, pixel: [f64; 2]) -> &[u32] {
@@ -63,15 +63,15 @@ impl Tiles {
             let pixel = pixel[i].round().max(0.0) as u32;
             (pixel / self.sides[i]).min(self.count[i] - 1)
         });
-        let tile = (row * self.count[0] + column) as usize;
-        &self.members[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+        let cell = (row * self.count[0] + column) as usize;
+        &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
     /// The spheres that are seen somewhere, prepared, and where that is.
     pub fn sorted<R: Real>(
         scene: &Scene,
         camera: &Camera<R>,
-        view: View,
+        view: ViewParameters,
         hidden: &[bool],
     ) -> (Vec<Sphere<R>>, Self) {
         let ball = |object: usize| match scene.objects[object].shape {
@@ -81,35 +81,35 @@ impl Tiles {
         let outline = Outlines::new(scene, camera, view);
         let seen = |object: usize| {
             let (center, radius) = ball(object).filter(|_| !hidden[object])?;
-            let (most, covered) = outline.of(center, radius)?;
+            let (max_inverse, covered) = outline.of(center, radius)?;
             let sphere = Sphere::new(scene.camera.viewpoint, camera, object, center, radius)?;
-            Some((sphere, (most, covered)))
+            Some((sphere, (max_inverse, covered)))
         };
         let (spheres, seen): (Vec<Sphere<R>>, Vec<(f32, Covered)>) = (0..scene.objects.len())
             .into_par_iter()
             .filter_map(seen)
             .unzip();
-        let (most, covered): (Vec<f32>, Vec<Covered>) = seen.into_iter().unzip();
+        let (max_inverse, covered): (Vec<f32>, Vec<Covered>) = seen.into_iter().unzip();
         let ball = |place: usize| ball(spheres[place].object).unwrap_or_default();
-        let tiles = Self::of(scene.camera.pixeldim, most, &covered, ball);
-        (spheres, tiles)
+        let screen_grid = Self::of(scene.camera.pixeldim, max_inverse, &covered, ball);
+        (spheres, screen_grid)
     }
 
     /// The lists of spheres that cover these pixels.
     fn of(
         pixels: [u32; 2],
-        most: Vec<f32>,
+        max_inverse: Vec<f32>,
         covered: &[Covered],
         ball: impl Fn(usize) -> (DVec3, f64),
     ) -> Self {
-        let order = nearest_first(&most, ball);
+        let order = nearest_first(&max_inverse, ball);
         let mut sides = SIDES;
         while !few_enough(pixels, sides, covered) {
             sides = sides.map(|side| 2 * side);
         }
         let count = counts(pixels, sides);
-        let tiles = count[0] as usize * count[1] as usize;
-        let mut starts = vec![0_u32; tiles + 2];
+        let cells = count[0] as usize * count[1] as usize;
+        let mut starts = vec![0_u32; cells + 2];
         let each = |place: usize, then: &mut dyn FnMut(usize)| {
             let [x, y] = covered[place];
             for row in y[0] / sides[1]..=y[1] / sides[1] {
@@ -119,19 +119,19 @@ impl Tiles {
             }
         };
         for &place in &order {
-            each(place as usize, &mut |tile| starts[tile + 2] += 1);
+            each(place as usize, &mut |cell| starts[cell + 2] += 1);
         }
         let mut total = 0;
         for start in &mut starts {
             total += *start;
             *start = total;
         }
-        // Now starts[i + 1] is where tile i's list goes on; filled, it is where it ends.
+        // Now starts[i + 1] is where cell i's list goes on; filled, it is where it ends.
         let mut members = vec![0; total as usize];
         for &place in &order {
-            each(place as usize, &mut |tile| {
-                members[starts[tile + 1] as usize] = place;
-                starts[tile + 1] += 1;
+            each(place as usize, &mut |cell| {
+                members[starts[cell + 1] as usize] = place;
+                starts[cell + 1] += 1;
             });
         }
         starts.pop();
@@ -140,7 +140,7 @@ impl Tiles {
             count,
             starts,
             members,
-            most,
+            max_inverse,
         }
     }
 }
@@ -149,7 +149,7 @@ fn counts(pixels: [u32; 2], sides: [u32; 2]) -> [u32; 2] {
     [0, 1].map(|i| pixels[i].div_ceil(sides[i]))
 }
 
-/// Whether tiles of this size are not too many, nor their lists too long.
+/// Whether cells of this size are not too many, nor their lists too long.
 fn few_enough(pixels: [u32; 2], sides: [u32; 2], covered: &[Covered]) -> bool {
     let count = counts(pixels, sides).map(u64::from);
     if count == [1, 1] {
@@ -163,14 +163,16 @@ fn few_enough(pixels: [u32; 2], sides: [u32; 2], covered: &[Covered]) -> bool {
         columns * rows
     };
     let total: u64 = covered.par_iter().map(entries).sum();
-    count[0] * count[1] <= MOST_TILES && total <= ENTRIES + 8 * covered.len() as u64
+    count[0] * count[1] <= MOST_CELLS && total <= ENTRIES + 8 * covered.len() as u64
 }
 
 /// The places of the spheres, nearest first. Of equal spheres only the first in the file is there: it is the one that counts.
-fn nearest_first(most: &[f32], ball: impl Fn(usize) -> (DVec3, f64)) -> Vec<u32> {
+fn nearest_first(max_inverse: &[f32], ball: impl Fn(usize) -> (DVec3, f64)) -> Vec<u32> {
     // Positive floats are ordered as their bits.
-    let key = |(place, most): (usize, &f32)| u64::from(!most.to_bits()) << 32 | place as u64;
-    let mut keys: Vec<u64> = most.par_iter().enumerate().map(key).collect();
+    let key = |(place, max_inverse): (usize, &f32)| {
+        u64::from(!max_inverse.to_bits()) << 32 | place as u64
+    };
+    let mut keys: Vec<u64> = max_inverse.par_iter().enumerate().map(key).collect();
     keys.par_sort_unstable();
     let mut order = Vec::with_capacity(keys.len());
     for alike in keys.chunk_by(|a, b| a >> 32 == b >> 32) {
@@ -203,13 +205,13 @@ struct Outlines {
 }
 
 impl Outlines {
-    fn new<R: Real>(scene: &Scene, camera: &Camera<R>, view: View) -> Self {
+    fn new<R: Real>(scene: &Scene, camera: &Camera<R>, view: ViewParameters) -> Self {
         Self {
             viewpoint: scene.camera.viewpoint,
             unit: two_to(-camera.scale),
-            distance: camera.distance.approx(),
-            step: camera.step.map(R::approx),
-            offset: camera.offset.map(R::approx),
+            distance: camera.distance.to_f64(),
+            step: camera.step.map(R::to_f64),
+            offset: camera.offset.map(R::to_f64),
             anchor: camera.anchor.map(f64::from),
             pixels: scene.camera.pixeldim,
             margin: view.margin,
@@ -229,7 +231,7 @@ impl Outlines {
         }
         // H.z = −d·s is at most that of the sphere's nearest point.
         let nearest = (d / (depth - r) * (1.0 + 1e-6)).min(f64::from(f32::MAX) * 0.9);
-        let most = (nearest as f32).next_up();
+        let max_inverse = (nearest as f32).next_up();
         // The planes through the viewpoint and a column's or row's rays touch the sphere at W_i = d·(c·z ± r·√(c² + z² − r²))/
         // (z² − r²), z the depth: docs/NUMERICS.md.
         let square = (depth - r) * (depth + r);
@@ -258,7 +260,7 @@ impl Outlines {
             }
             *covered = [low.max(0.0) as u32, high.min(last) as u32];
         }
-        Some((most, covered))
+        Some((max_inverse, covered))
     }
 }
 

@@ -48,16 +48,16 @@ fn scene(pixeldim: [u32; 2], balls: Vec<(DVec3, f64)>) -> Scene {
 /// Balls before, beside, around and behind the viewpoint, from specks to more than the screen.
 fn balls(numbers: &mut Numbers, count: usize) -> Vec<(DVec3, f64)> {
     let mut ball = |_| {
-        let spread = 10_f64.powf(numbers.between(-1.0, 2.0));
-        let mut at = |from: f64| from + spread * numbers.between(-1.0, 1.0);
-        let center = DVec3::new(at(1.5), at(1.25), at(2.0 - 0.8 * spread));
-        let radius = spread * 10_f64.powf(numbers.between(-3.0, 0.2));
+        let scale = 10_f64.powf(numbers.between(-1.0, 2.0));
+        let mut at = |from: f64| from + scale * numbers.between(-1.0, 1.0);
+        let center = DVec3::new(at(1.5), at(1.25), at(2.0 - 0.8 * scale));
+        let radius = scale * 10_f64.powf(numbers.between(-3.0, 0.2));
         (center, radius)
     };
     (0..count).map(&mut ball).collect()
 }
 
-/// The objects seen in the pixels, by their tiles' lists and by asking all.
+/// The objects seen in the pixels, by their cells' lists and by asking all.
 fn both(scene: &Scene, prepared: &Prepared<f64>, margin: f64) -> [Vec<Option<usize>>; 2] {
     let pixels = scene.camera.pixeldim;
     let sphere = |(index, object): (usize, &Object)| match object.shape {
@@ -68,7 +68,7 @@ fn both(scene: &Scene, prepared: &Prepared<f64>, margin: f64) -> [Vec<Option<usi
         Shape::Plane { .. } => None,
     };
     let all = Prepared {
-        tiles: None,
+        screen_grid: None,
         spheres: scene
             .objects
             .iter()
@@ -117,7 +117,7 @@ fn the_lists_miss_nothing() {
         }
         .view();
         let prepared = Prepared::new(&scene, view);
-        assert!(prepared.tiles.is_some());
+        assert!(prepared.screen_grid.is_some());
         let [listed, all] = both(&scene, &prepared, view.margin);
         assert_eq!(listed, all, "round {round}");
         hits += listed.iter().flatten().count();
@@ -129,7 +129,7 @@ fn the_lists_miss_nothing() {
 fn what_a_list_lacks_is_noticed() {
     let scene = scene([61, 45], balls(&mut Numbers(7), 200));
     let mut prepared = Prepared::<f64>::new(&scene, 0.0);
-    let mut tiles = Tiles::clone(prepared.tiles.as_ref().unwrap());
+    let mut screen_grid = ScreenGrid::clone(prepared.screen_grid.as_ref().unwrap());
     let [_, all] = both(&scene, &prepared, 0.0);
     let seen = all.iter().flatten().next().unwrap();
     let place = prepared
@@ -138,10 +138,14 @@ fn what_a_list_lacks_is_noticed() {
         .position(|s| s.object == *seen)
         .unwrap();
     let other = (place as u32 + 1) % prepared.spheres.len() as u32;
-    for member in tiles.members.iter_mut().filter(|m| **m as usize == place) {
+    for member in screen_grid
+        .members
+        .iter_mut()
+        .filter(|m| **m as usize == place)
+    {
         *member = other;
     }
-    prepared.tiles = Some(tiles.into());
+    prepared.screen_grid = Some(screen_grid.into());
     let [listed, all] = both(&scene, &prepared, 0.0);
     assert_ne!(listed, all);
 }
@@ -151,9 +155,9 @@ fn boxes_are_as_tight_as_outlines() {
     // A ball of radius 1 whose center is 10 before the viewpoint, on the axis: it is seen within d/√(10² − 1) of it.
     let scene = scene([4001, 3001], vec![(DVec3::new(1.5, 1.25, -8.0), 1.0); 40]);
     let prepared = Prepared::<f64>::new(&scene, 0.0);
-    let view = View::from(0.0);
+    let view = ViewParameters::from(0.0);
     let outlines = Outlines::new(&scene, &prepared.camera, view);
-    let (most, covered) = outlines.of(DVec3::new(1.5, 1.25, -8.0), 1.0).unwrap();
+    let (max_inverse, covered) = outlines.of(DVec3::new(1.5, 1.25, -8.0), 1.0).unwrap();
     let reach = 2.0 / 99_f64.sqrt() * 1000.0;
     let range = |middle: f64| {
         [
@@ -162,7 +166,7 @@ fn boxes_are_as_tight_as_outlines() {
         ]
     };
     assert_eq!(covered, [range(1500.0), range(1250.0)]);
-    let units = f64::from(most) * 9.0 / 2.0;
+    let units = f64::from(max_inverse) * 9.0 / 2.0;
     assert!(units > 1.0 && units < 1.000_002, "{units}");
 }
 
@@ -173,18 +177,20 @@ fn lists_run_from_the_nearest_and_name_equal_spheres_once() {
     balls.extend(again);
     let scene = scene([61, 45], balls);
     let prepared = Prepared::<f64>::new(&scene, 0.0);
-    let tiles = prepared.tiles.as_ref().unwrap();
+    let screen_grid = prepared.screen_grid.as_ref().unwrap();
     let mut listed = 0;
-    for range in tiles.starts.windows(2) {
-        let list = &tiles.members[range[0] as usize..range[1] as usize];
-        assert!(list.is_sorted_by(|a, b| tiles.most[*a as usize] >= tiles.most[*b as usize]));
+    for range in screen_grid.starts.windows(2) {
+        let list = &screen_grid.members[range[0] as usize..range[1] as usize];
+        assert!(list.is_sorted_by(
+            |a, b| screen_grid.max_inverse[*a as usize] >= screen_grid.max_inverse[*b as usize]
+        ));
         assert!(
             list.iter()
                 .all(|m| prepared.spheres[*m as usize].object < 300)
         );
         listed += list.len();
     }
-    assert_eq!(listed, tiles.members.len());
+    assert_eq!(listed, screen_grid.members.len());
     let [listed, all] = both(&scene, &prepared, 0.0);
     assert_eq!(listed, all);
 }
@@ -194,18 +200,18 @@ fn the_lists_stay_short() {
     // Each of these covers the whole screen.
     let scene = scene([2000, 2000], vec![(DVec3::new(1.5, 1.25, 2.0), 3.0); 50]);
     assert!(
-        Prepared::<f64>::new(&scene, 0.0).tiles.is_none(),
+        Prepared::<f64>::new(&scene, 0.0).screen_grid.is_none(),
         "the viewpoint is inside"
     );
     let walls = |i| (DVec3::new(1.5, 1.25, -1000.0 - f64::from(i)), 1001.0);
     let scene = self::scene([20_000, 20_000], (0..20_000).map(walls).collect());
-    let tiles = Prepared::<f64>::new(&scene, 0.0).tiles.unwrap();
-    assert!(tiles.members.len() as u64 <= ENTRIES + 8 * 20_000);
-    assert!(tiles.starts.len() as u64 <= MOST_TILES + 1);
+    let screen_grid = Prepared::<f64>::new(&scene, 0.0).screen_grid.unwrap();
+    assert!(screen_grid.members.len() as u64 <= ENTRIES + 8 * 20_000);
+    assert!(screen_grid.starts.len() as u64 <= MOST_CELLS + 1);
 }
 
 #[test]
 fn few_spheres_are_not_sorted() {
     let scene = scene([61, 45], balls(&mut Numbers(7), WORTHWHILE - 1));
-    assert!(Prepared::<f64>::new(&scene, 0.0).tiles.is_none());
+    assert!(Prepared::<f64>::new(&scene, 0.0).screen_grid.is_none());
 }

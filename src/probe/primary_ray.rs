@@ -13,13 +13,13 @@ use crate::real::{Real, Undecided};
 use crate::scene::Scene;
 
 use super::digits::{components, full, line, triple};
-use super::why::{ExactRay, Verdict};
+use super::why::{ExactRay, HitOrMiss};
 
 /// With more objects than this only hits are listed.
 const LISTED: usize = 50;
 
 /// A ray from the viewpoint, as the tracer has it and as it is exactly.
-pub(super) struct Sight<'a> {
+pub(super) struct PrimaryRay<'a> {
     scene: &'a Scene,
     prepared: &'a Prepared<f64>,
     screen_tolerance: f64,
@@ -27,7 +27,7 @@ pub(super) struct Sight<'a> {
     exact: ExactRay,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> PrimaryRay<'a> {
     /// Through pixel (x, y), counted from the bottom left, with fractions between pixels.
     pub(super) fn new(
         scene: &'a Scene,
@@ -96,8 +96,8 @@ impl<'a> Sight<'a> {
                     let point = hit_point(scene, prepared, &traced.ray, hit);
                     let t = 1.0 / inverse_distance(&prepared.camera, &self.ray, hit.inverse);
                     let doubt = match verdict {
-                        Verdict::Hit => String::new(),
-                        Verdict::Miss(reason) => format!(" (in f64; exactly: miss, {reason})"),
+                        HitOrMiss::Hit => String::new(),
+                        HitOrMiss::Miss(reason) => format!(" (in f64; exactly: miss, {reason})"),
                     };
                     writeln!(
                         text,
@@ -106,8 +106,8 @@ impl<'a> Sight<'a> {
                         triple(point.to_array())
                     )
                 }
-                (None, Verdict::Miss(reason)) => writeln!(text, "miss  {reason}"),
-                (None, Verdict::Hit) => writeln!(
+                (None, HitOrMiss::Miss(reason)) => writeln!(text, "miss  {reason}"),
+                (None, HitOrMiss::Hit) => writeln!(
                     text,
                     "miss  (in f64; exactly: hit, by less than f64 can tell)"
                 ),
@@ -164,6 +164,6 @@ impl<'a> Sight<'a> {
 
 /// The direction of a ray, of unit length.
 pub(super) fn direction<R: Real>(ray: &Ray<R>) -> [f64; 3] {
-    let length = ray.w2.approx().sqrt();
-    ray.w.approx().to_array().map(|w| w / length)
+    let length = ray.w2.to_f64().sqrt();
+    ray.w.to_f64().to_array().map(|w| w / length)
 }

@@ -5,11 +5,11 @@ use std::sync::mpsc;
 use std::thread;
 
 use super::choice::Choice;
-use super::finish::{Digest, Finish, Stop, Wrong};
+use super::finish::{Digest, Finish, FinishError, Wrong};
 use super::report::Done;
 use super::{Backend, Beside, Emit, Error, Live, Settings};
 use crate::certify::lanes::Lanes;
-use crate::certify::pixels::Tracer;
+use crate::certify::pixels::PixelDecider;
 use crate::certify::{Tally, trust};
 use crate::frame::Band;
 use crate::gpu::pipeline::{Pipeline, SceneBuffers};
@@ -23,10 +23,10 @@ use crate::shader::pack::Packed;
 use crate::stopwatch::{Phase, Stopwatch};
 
 /// Everything that a tracer needs to know.
-pub(super) struct Job<'a> {
+pub(super) struct Rendering<'a> {
     pub(super) scene: &'a Scene,
     pub(super) jitter: &'a Jitter,
-    pub(super) tracer: &'a Tracer<'a>,
+    pub(super) decider: &'a PixelDecider<'a>,
     /// The threads that the CPU's part runs on, if not all.
     pub(super) pool: Option<&'a rayon::ThreadPool>,
     pub(super) width: u32,
@@ -34,7 +34,7 @@ pub(super) struct Job<'a> {
     pub(super) settings: &'a Settings,
 }
 
-impl Job<'_> {
+impl Rendering<'_> {
     /// Renders on the tracer that was chosen; on the CPU where the scene turns out to be too much for the GPU, if any
     /// tracer will do.
     pub(super) fn run(
@@ -72,9 +72,9 @@ impl Job<'_> {
         watch: &mut Stopwatch,
     ) -> Result<Done, Error> {
         // Prepared once, for the GPU and for the pixels that the CPU decides.
-        let stages = self.on_threads(|| self.tracer.stages());
+        let exact_tracer = self.on_threads(|| self.decider.exact_tracer());
         watch.lap(Phase::Prepare);
-        let packed = Packed::prepared(stages.bounded(), self.scene, self.settings);
+        let packed = Packed::prepared(exact_tracer.bounded(), self.scene, self.settings);
         let (found, allowed) = (packed.loop_iterations(), LOOP_ITERATIONS);
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
@@ -96,7 +96,7 @@ impl Job<'_> {
             dispatch_seconds: live.dispatch_seconds,
             canvas: live.canvas,
         };
-        let mut finish = Finish::new(self.tracer, emit, self.settings);
+        let mut finish = Finish::new(self.decider, emit, self.settings);
         let ended = self.in_step(live, &pipeline, &frame, &mut finish, watch);
         let (done, digest) = finish.end();
         let done = Done {
@@ -111,8 +111,8 @@ impl Job<'_> {
                 },
                 ..done
             }),
-            Err(Stop::Error(error)) => Err(error),
-            Err(Stop::Wrong(wrong)) => {
+            Err(FinishError::Error(error)) => Err(error),
+            Err(FinishError::Wrong(wrong)) => {
                 trust::revoke(live.gpu, self.settings.cache.as_deref());
                 self.again(&wrong, &digest, done, emit, watch)
             }
@@ -152,7 +152,7 @@ impl Job<'_> {
         frame: &bands::Frame<'_>,
         finish: &mut Finish<'_, '_, '_>,
         watch: &mut Stopwatch,
-    ) -> Result<f64, Stop> {
+    ) -> Result<f64, FinishError> {
         let (sender, receiver) = mpsc::sync_channel::<bands::Rendered>(1);
         let kernel = thread::scope(|scope| {
             let finisher = thread::Builder::new()
@@ -178,7 +178,7 @@ impl Job<'_> {
                 Ok(finished) => finished?,
                 Err(panic) => std::panic::resume_unwind(panic),
             }
-            Ok::<_, Stop>(kernel?)
+            Ok::<_, FinishError>(kernel?)
         })?;
         if (live.stop)() {
             return Err(Error::Stopped.into());
@@ -242,9 +242,10 @@ impl Job<'_> {
         if rows.is_empty() {
             return Ok((tally, bands));
         }
-        let stages = self.on_threads(|| self.tracer.stages());
+        let exact_tracer = self.on_threads(|| self.decider.exact_tracer());
         watch.lap(Phase::Prepare);
-        let lanes = self.on_threads(|| Lanes::new(stages.bounded(), self.scene, self.settings));
+        let lanes =
+            self.on_threads(|| Lanes::new(exact_tracer.bounded(), self.scene, self.settings));
         watch.lap(Phase::Pack);
         let most = ((4 << 20) / self.width).max(1);
         let fixed = self.settings.band_rows.map(|rows| rows.clamp(1, most));
@@ -252,7 +253,7 @@ impl Job<'_> {
         let mut end = rows.end;
         while end > rows.start {
             let (band, counted) =
-                self.on_threads(|| self.tracer.band(end - height..end, lanes.as_ref()))?;
+                self.on_threads(|| self.decider.band(end - height..end, lanes.as_ref()))?;
             tally = tally.merge(counted);
             let seconds = watch.lap(Phase::Trace);
             emit(&band)?;

@@ -11,14 +11,14 @@ const MOST: u32 = 16;
 
 /// What pictures of a scene took lately.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ladder {
+pub(super) struct AdaptiveResolution {
     /// Seconds that any picture takes, however small, such as for compiling: the least that one took.
     least: Option<f64>,
     /// Seconds of the whole picture.
     whole: Option<f64>,
 }
 
-impl Ladder {
+impl AdaptiveResolution {
     /// How many times smaller in each direction the first picture should be.
     pub(super) fn first(&self) -> u32 {
         match self.whole {
@@ -65,12 +65,15 @@ mod tests {
 
     #[test]
     fn a_quick_scene_is_never_made_smaller() {
-        let mut ladder = Ladder::default();
-        assert_eq!((ladder.first(), ladder.patience()), (1, Some(QUICK)));
-        ladder.took(1, 0.06);
-        assert_eq!((ladder.first(), ladder.patience()), (1, None));
-        ladder.took(1, 0.149);
-        assert_eq!(ladder.first(), 1);
+        let mut resolution = AdaptiveResolution::default();
+        assert_eq!(
+            (resolution.first(), resolution.patience()),
+            (1, Some(QUICK))
+        );
+        resolution.took(1, 0.06);
+        assert_eq!((resolution.first(), resolution.patience()), (1, None));
+        resolution.took(1, 0.149);
+        assert_eq!(resolution.first(), 1);
     }
 
     #[test]
@@ -78,14 +81,14 @@ mod tests {
         // So long for compiling, and so long a picture.
         for (fixed, whole) in [(0.0, 1.0), (0.03, 0.3), (0.05, 4.0), (0.02, 60.0)] {
             let seconds = |smaller: u32| fixed + whole / f64::from(smaller * smaller);
-            let mut ladder = Ladder::default();
-            ladder.gave_up(0.2, 0.2 / seconds(1));
+            let mut resolution = AdaptiveResolution::default();
+            resolution.gave_up(0.2, 0.2 / seconds(1));
             for _ in 0..5 {
-                let smaller = ladder.first();
+                let smaller = resolution.first();
                 assert!(smaller > 1, "{fixed} {whole}");
-                ladder.took(smaller, seconds(smaller));
+                resolution.took(smaller, seconds(smaller));
             }
-            let smaller = ladder.first();
+            let smaller = resolution.first();
             assert!(
                 seconds(smaller) <= 0.13 || smaller == MOST,
                 "{fixed} {whole} {smaller}"
@@ -100,23 +103,23 @@ mod tests {
 
     #[test]
     fn a_scene_that_became_quick_is_noticed() {
-        let mut ladder = Ladder::default();
-        ladder.took(1, 2.0);
-        assert!(ladder.first() > 4);
+        let mut resolution = AdaptiveResolution::default();
+        resolution.took(1, 2.0);
+        assert!(resolution.first() > 4);
         // An edit removed what made it slow.
         for _ in 0..8 {
-            let smaller = ladder.first();
-            ladder.took(smaller, 0.02);
-            assert!(ladder.first() <= smaller);
+            let smaller = resolution.first();
+            resolution.took(smaller, 0.02);
+            assert!(resolution.first() <= smaller);
         }
-        assert_eq!(ladder.first(), 1);
+        assert_eq!(resolution.first(), 1);
     }
 
     #[test]
     fn a_scene_that_became_slow_is_noticed() {
-        let mut ladder = Ladder::default();
-        ladder.took(1, 0.05);
-        ladder.took(1, 3.0);
-        assert!(ladder.first() > 4);
+        let mut resolution = AdaptiveResolution::default();
+        resolution.took(1, 0.05);
+        resolution.took(1, 3.0);
+        assert!(resolution.first() > 4);
     }
 }

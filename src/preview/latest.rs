@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 
 /// The side that puts wishes in.
 #[derive(Debug)]
-pub(super) struct Newest<T> {
+pub(super) struct LatestSender<T> {
     shared: Arc<Shared<T>>,
 }
 
 /// The side that takes them out.
 #[derive(Debug)]
-pub(super) struct Taker<T> {
+pub(super) struct LatestReceiver<T> {
     shared: Arc<Shared<T>>,
 }
 
@@ -37,17 +37,17 @@ impl<T> Shared<T> {
 }
 
 /// Both sides of a new box.
-pub(super) fn newest<T>() -> (Newest<T>, Taker<T>) {
+pub(super) fn latest<T>() -> (LatestSender<T>, LatestReceiver<T>) {
     let shared = Arc::new(Shared {
         slot: Mutex::new(None),
         bell: Condvar::new(),
         newest: AtomicU64::new(0),
     });
     let other = Arc::clone(&shared);
-    (Newest { shared }, Taker { shared: other })
+    (LatestSender { shared }, LatestReceiver { shared: other })
 }
 
-impl<T> Newest<T> {
+impl<T> LatestSender<T> {
     /// Puts a wish in, in place of one that was not taken yet. Returns its number: they rise.
     pub(super) fn put(&self, wish: T) -> u64 {
         let mut slot = self.shared.slot();
@@ -63,7 +63,7 @@ impl<T> Newest<T> {
     }
 }
 
-impl<T> Newest<T> {
+impl<T> LatestSender<T> {
     /// Ends it: there will be no more wishes, and the newest is old.
     pub(super) fn close(&self) {
         let mut slot = self.shared.slot();
@@ -73,13 +73,13 @@ impl<T> Newest<T> {
     }
 }
 
-impl<T> Drop for Newest<T> {
+impl<T> Drop for LatestSender<T> {
     fn drop(&mut self) {
         self.close();
     }
 }
 
-impl<T> Taker<T> {
+impl<T> LatestReceiver<T> {
     /// Waits for a wish, and takes it with its number. None once there will be none.
     pub(super) fn take(&self) -> Option<(u64, T)> {
         let mut slot = self.shared.slot();
@@ -130,33 +130,33 @@ mod tests {
 
     #[test]
     fn only_the_newest_is_taken() {
-        let (newest, taker) = newest();
+        let (newest, receiver) = latest();
         for wish in 1..=5 {
             assert_eq!(newest.put(wish), wish);
         }
-        assert_eq!(taker.take(), Some((5, 5)));
-        assert!(!taker.is_old(5));
+        assert_eq!(receiver.take(), Some((5, 5)));
+        assert!(!receiver.is_old(5));
         newest.put(6);
-        assert!(taker.is_old(5));
-        assert_eq!(taker.take(), Some((6, 6)));
+        assert!(receiver.is_old(5));
+        assert_eq!(receiver.take(), Some((6, 6)));
         newest.close();
-        assert!(taker.is_old(6));
-        assert_eq!(taker.take(), None);
+        assert!(receiver.is_old(6));
+        assert_eq!(receiver.take(), None);
         newest.put(7);
-        assert_eq!(taker.take(), None);
+        assert_eq!(receiver.take(), None);
     }
 
     #[test]
     fn a_rest_ends_early_where_there_is_a_newer_wish() {
-        let (newest, taker) = newest();
+        let (newest, receiver) = latest();
         let number = newest.put(());
-        assert!(taker.take().is_some());
+        assert!(receiver.take().is_some());
         let soon = Instant::now() + Duration::from_millis(5);
-        assert!(taker.rest(number, soon));
+        assert!(receiver.rest(number, soon));
         assert!(Instant::now() >= soon);
         let never = Instant::now() + Duration::from_secs(600);
         let rested = thread::scope(|scope| {
-            let rests = scope.spawn(|| taker.rest(number, never));
+            let rests = scope.spawn(|| receiver.rest(number, never));
             newest.put(());
             rests.join().unwrap()
         });
@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn a_taker_that_waits_is_woken() {
-        let (newest, taker) = newest();
-        let taken = thread::spawn(move || (taker.take(), taker.take()));
+        let (newest, receiver) = latest();
+        let taken = thread::spawn(move || (receiver.take(), receiver.take()));
         newest.put(7);
         // It may or may not have been taken by now; either way it is the end that comes next.
         thread::sleep(Duration::from_millis(20));

@@ -6,14 +6,14 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Whether work may be handed in.
 #[derive(Debug, Default)]
-pub struct Turn {
+pub struct SubmitGate {
     closed: Mutex<bool>,
     bell: Condvar,
 }
 
-impl Turn {
+impl SubmitGate {
     /// Hands work in, once that is allowed.
-    pub(super) fn take<T>(&self, submit: impl FnOnce() -> T) -> T {
+    pub(super) fn pass<T>(&self, submit: impl FnOnce() -> T) -> T {
         let mut closed = self.lock();
         while *closed {
             closed = self
@@ -48,16 +48,16 @@ mod tests {
 
     #[test]
     fn nobody_hands_work_in_while_it_is_closed() {
-        let turn = Turn::default();
-        assert_eq!(turn.take(|| 1), 1);
+        let gate = SubmitGate::default();
+        assert_eq!(gate.pass(|| 1), 1);
         let may = AtomicBool::new(false);
-        turn.close();
+        gate.close();
         thread::scope(|scope| {
-            let work = || turn.take(|| may.load(Ordering::SeqCst));
+            let work = || gate.pass(|| may.load(Ordering::SeqCst));
             let workers = [scope.spawn(work), scope.spawn(work)];
             thread::sleep(std::time::Duration::from_millis(20));
             may.store(true, Ordering::SeqCst);
-            turn.open();
+            gate.open();
             for worker in workers {
                 assert!(
                     worker.join().unwrap(),

@@ -4,56 +4,56 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use super::newest::Newest;
+use super::latest::LatestSender;
 use super::session::{News, Session};
 use super::worker::Wish;
 
 /// A session under a lock, which nobody holds for long.
 #[derive(Debug, Clone)]
-pub(super) struct Desk {
-    shared: Arc<Mutex<Paper>>,
+pub(super) struct SharedSession {
+    shared: Arc<Mutex<SessionState>>,
 }
 
 /// The session, and the wishes of it.
 #[derive(Debug)]
-pub(super) struct Paper {
+pub(super) struct SessionState {
     /// The file, and what is changed on top of it.
     pub(super) session: Session,
     /// The number of the newest wish.
     pub(super) wished: u64,
-    wishes: Arc<Newest<Wish>>,
+    wishes: Arc<LatestSender<Wish>>,
 }
 
-impl Desk {
+impl SharedSession {
     /// With nothing wished for yet.
-    pub(super) fn new(session: Session, wishes: Arc<Newest<Wish>>) -> Self {
-        let paper = Paper {
+    pub(super) fn new(session: Session, wishes: Arc<LatestSender<Wish>>) -> Self {
+        let state = SessionState {
             session,
             wished: 0,
             wishes,
         };
         Self {
-            shared: Arc::new(Mutex::new(paper)),
+            shared: Arc::new(Mutex::new(state)),
         }
     }
 
     /// The session.
-    pub(super) fn lock(&self) -> MutexGuard<'_, Paper> {
+    pub(super) fn lock(&self) -> MutexGuard<'_, SessionState> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes news of the file. Whether something is rendered now; if not, there may be something to be said.
     pub(super) fn news(&self, news: News) -> bool {
-        let mut paper = self.lock();
-        let changed = paper.session.news(news);
+        let mut state = self.lock();
+        let changed = state.session.news(news);
         if changed {
-            paper.wish();
+            state.wish();
         }
         changed
     }
 }
 
-impl Paper {
+impl SessionState {
     /// Has what is wanted now rendered.
     pub(super) fn wish(&mut self) {
         if let Some((scene, changes)) = self.session.wanted() {
@@ -75,7 +75,7 @@ impl Paper {
 
 #[cfg(test)]
 mod tests {
-    use super::super::newest::newest;
+    use super::super::latest::latest;
     use super::super::session::Version;
     use super::*;
 
@@ -83,21 +83,21 @@ mod tests {
 
     #[test]
     fn what_is_new_is_wished_for_and_nothing_else() {
-        let (wishes, taker) = newest();
-        let desk = Desk::new(Session::new("a.txt".into(), None), Arc::new(wishes));
+        let (wishes, receiver) = latest();
+        let shared = SharedSession::new(Session::new("a.txt".into(), None), Arc::new(wishes));
         let tell = |text: &str| {
             let version = Version::read("a.txt".as_ref(), text.into());
-            desk.news(News::Version(version))
+            shared.news(News::Version(version))
         };
         assert!(!tell("camera"));
-        assert_eq!(desk.lock().wished, 0);
+        assert_eq!(shared.lock().wished, 0);
         assert!(tell(SCENE));
         assert!(!tell(SCENE));
-        assert_eq!(desk.lock().wished, 1);
+        assert_eq!(shared.lock().wished, 1);
         assert!(tell(&SCENE.replace("4 3 6", "5 3 6")));
-        let (number, wish) = taker.take().unwrap();
+        let (number, wish) = receiver.take().unwrap();
         assert_eq!((number, wish.scene.camera.viewpoint.x), (2, 5.0));
-        desk.lock().change(|session| session.discard(None));
-        assert_eq!(desk.lock().wished, 2);
+        shared.lock().change(|session| session.discard(None));
+        assert_eq!(shared.lock().wished, 2);
     }
 }

@@ -51,7 +51,7 @@ pub enum Unmet {
 ///
 /// Rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then the mirror
 /// image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
-pub trait Watch<R> {
+pub trait TraceObserver<R> {
     /// `ray` met nothing; had it a number, that is `number`.
     fn missed(&mut self, number: u32, ray: &Branch<R>, why: Unmet) {
         let _ = (number, ray, why);
@@ -76,6 +76,6 @@ pub trait Watch<R> {
 
 /// Nobody listens.
 #[derive(Debug, Clone, Copy)]
-pub struct Unwatched;
+pub struct Unobserved;
 
-impl<R> Watch<R> for Unwatched {}
+impl<R> TraceObserver<R> for Unobserved {}

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::lex::{Kind as Lexeme, Token};
+use super::lex::{Token, TokenKind};
 use super::number::{self, split_dash};
 use super::parse::Parser;
 use crate::diagnostic::Diagnostic;
@@ -116,11 +116,11 @@ impl Parser<'_> {
             } else {
                 self.starts_line()
             };
-            if ends || next == Lexeme::End || (in_block && next != Lexeme::Word) {
+            if ends || next == TokenKind::End || (in_block && next != TokenKind::Word) {
                 return;
             }
             last = self.bump().text;
-            if next == Lexeme::Open {
+            if next == TokenKind::Open {
                 self.skip_block();
             }
         }

@@ -1,7 +1,7 @@
 //! Spheres that are made ready one by one, when a ray comes near them: for number types whose numbers take memory.
 //!
-//! The spheres' tree and tiles, and all that is no number, is shared with a scene prepared before in another type. The
-//! floor below `world` and `prepared`, which hold a [`Later`] in place of their spheres.
+//! The spheres' tree and screen grid, and all that is no number, is shared with a scene prepared before in another type. The
+//! floor below `world` and `prepared`, which hold a [`OnDemandSpheres`] in place of their spheres.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::scene::{Scene, Shape};
 
 /// What many spheres are made from.
 #[derive(Debug, Clone)]
-pub struct Later {
+pub struct OnDemandSpheres {
     viewpoint: DVec3,
     scale: i32,
     /// One for each object: center and radius; of planes nothing.
@@ -25,14 +25,14 @@ pub struct Later {
     /// The objects that are spheres, in the order of the prepared ones.
     order: Arc<Vec<u32>>,
     /// Lights that lie on spheres, by object.
-    levels: Arc<HashMap<u32, Vec<usize>>>,
+    lights_on_spheres: Arc<HashMap<u32, Vec<usize>>>,
 }
 
 /// What the primary spheres and those of the world are made from, where they are many.
 #[derive(Debug, Clone, Default)]
-pub struct Laters {
-    pub(super) primary: Option<Later>,
-    pub(super) world: Option<Later>,
+pub struct OnDemandSources {
+    pub(super) primary: Option<OnDemandSpheres>,
+    pub(super) world: Option<OnDemandSpheres>,
 }
 
 /// One for each object of a scene: center and radius; of planes nothing.
@@ -47,21 +47,21 @@ pub(super) fn balls(scene: &Scene) -> Balls {
     Arc::new(scene.objects.iter().map(|o| ball(&o.shape)).collect())
 }
 
-impl Later {
+impl OnDemandSpheres {
     /// For the spheres that are the objects of `order`, and the lights that lie on some of them.
     pub(super) fn new(
         scene: &Scene,
         scale: i32,
         balls: &Balls,
         order: impl Iterator<Item = usize>,
-        levels: HashMap<u32, Vec<usize>>,
+        lights_on_spheres: HashMap<u32, Vec<usize>>,
     ) -> Self {
         Self {
             viewpoint: scene.camera.viewpoint,
             scale,
             balls: Arc::clone(balls),
             order: Arc::new(order.map(|object| object as u32).collect()),
-            levels: Arc::new(levels),
+            lights_on_spheres: Arc::new(lights_on_spheres),
         }
     }
 
@@ -81,13 +81,17 @@ impl Later {
     pub(super) fn world<R: Real>(&self, index: usize) -> Option<WorldSphere<R>> {
         let object = *self.order.get(index)?;
         let (center, radius) = self.balls[object as usize];
-        let level = self.levels.get(&object).cloned().unwrap_or_default();
+        let lights_on_surface = self
+            .lights_on_spheres
+            .get(&object)
+            .cloned()
+            .unwrap_or_default();
         let (viewpoint, unit) = (V3::exact(self.viewpoint), R::exact(two_to(-self.scale)));
         Some(WorldSphere {
             object: object as usize,
             center: (V3::exact(center) - viewpoint) * unit,
             radius: R::exact(radius) * unit,
-            level,
+            lights_on_surface,
         })
     }
 }

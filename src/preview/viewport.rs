@@ -19,7 +19,7 @@ const NEAREST: f64 = 1e-3;
 
 /// How the picture is laid into its area of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) enum Look {
+pub(super) enum Viewport {
     /// As large as fits, in whole steps if it is enlarged.
     #[default]
     Fit,
@@ -56,7 +56,7 @@ impl Area {
     }
 }
 
-impl Look {
+impl Viewport {
     /// Where a picture of `size` columns and rows is.
     pub(super) fn place(&self, area: Area, size: [u32; 2]) -> Placed {
         let pixels = size.map(f64::from);
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_picture_fits_without_being_blurred() {
-        let placed = |size| Look::Fit.place(AREA, size);
+        let placed = |size| Viewport::Fit.place(AREA, size);
         assert_eq!(
             (placed([640, 480]).zoom, placed([640, 480]).origin),
             (1.0, [90, 80])
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn the_pixel_under_the_cursor_counts_from_the_bottom_left() {
         let size = [640, 480];
-        let placed = Look::Fit.place(AREA, size);
+        let placed = Viewport::Fit.place(AREA, size);
         assert_eq!(placed.pixel([90.0, 80.0], size), Some([0, 479]));
         assert_eq!(placed.pixel([90.99, 80.99], size), Some([0, 479]));
         assert_eq!(placed.pixel([729.5, 559.5], size), Some([639, 0]));
@@ -236,31 +236,35 @@ mod tests {
     fn zooming_keeps_what_is_under_the_cursor() {
         let size = [640, 480];
         for at in [[100.0, 100.0], [400.5, 300.5], [700.0, 500.0]] {
-            let mut look = Look::Fit;
-            let pixel = look.place(AREA, size).pixel(at, size);
+            let mut viewport = Viewport::Fit;
+            let pixel = viewport.place(AREA, size).pixel(at, size);
             let mut zooms = vec![1.0];
             for _ in 0..20 {
-                look.step(true, at, AREA, size);
-                zooms.push(look.place(AREA, size).zoom);
-                assert_eq!(look.place(AREA, size).pixel(at, size), pixel, "{look:?}");
+                viewport.step(true, at, AREA, size);
+                zooms.push(viewport.place(AREA, size).zoom);
+                assert_eq!(
+                    viewport.place(AREA, size).pixel(at, size),
+                    pixel,
+                    "{viewport:?}"
+                );
             }
             assert_eq!(zooms.last(), Some(&MOST));
             assert!(zooms.contains(&2.0) && zooms.is_sorted());
-            look.step(false, at, AREA, size);
-            assert_eq!(look.place(AREA, size).zoom, 48.0);
+            viewport.step(false, at, AREA, size);
+            assert_eq!(viewport.place(AREA, size).zoom, 48.0);
         }
     }
 
     #[test]
     fn panning_moves_the_picture_with_the_mouse_and_does_not_lose_it() {
         let size = [640, 480];
-        let mut look = Look::At {
+        let mut viewport = Viewport::At {
             zoom: 4.0,
             middle: [100.0, 100.0],
         };
-        let before = look.place(AREA, size);
-        look.pan([30.0, -12.0], AREA, size);
-        let after = look.place(AREA, size);
+        let before = viewport.place(AREA, size);
+        viewport.pan([30.0, -12.0], AREA, size);
+        let after = viewport.place(AREA, size);
         assert_eq!(
             [
                 after.origin[0] - before.origin[0],
@@ -268,9 +272,9 @@ mod tests {
             ],
             [30, -12]
         );
-        look.pan([1e9, 1e9], AREA, size);
-        let Look::At { middle, .. } = look else {
-            panic!("{look:?}");
+        viewport.pan([1e9, 1e9], AREA, size);
+        let Viewport::At { middle, .. } = viewport else {
+            panic!("{viewport:?}");
         };
         assert_eq!(middle, [0.0, 0.0]);
     }
