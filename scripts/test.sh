@@ -6,8 +6,9 @@
 #
 # The window of `plumb preview` is tested on Xvfb, an X server without a screen (Linux only). The same goes for that.
 #
-# tests/gpu/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian package (32 MB,
-# nothing is installed) and kept beside what is built. PLUMB_SECOND_DRIVER names the JSON file of another one.
+# tests/gpu/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian
+# package (32 MB, nothing is installed) and kept beside what is built. PLUMB_SECOND_DRIVER names the JSON file of
+# another one.
 set -eu
 cd "$(dirname "$0")/.."
 

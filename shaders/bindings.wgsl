@@ -11,8 +11,8 @@ struct Dispatch {
 //#if partial
 
 // Behind the dispatch's pixels comes a list without order of those of which only some samples are sure: records of
-// PARTIAL_WORDS words, of place, the sum of such samples, its error, the bits of the samples in it. The list is in one buffer
-// with the pixels, since a driver may allow no more buffers than a scene needs anyway.
+// PARTIAL_WORDS words, of place, the sum of such samples, its error, the bits of the samples in it. The list is in one
+// buffer with the pixels, since a driver may allow no more buffers than a scene needs anyway.
 struct Pixels {
     // Records, those for which there was no room too.
     partials: atomic<u32>,

@@ -2,8 +2,8 @@
 
 //#insert struct BvhNode
 
-// Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir by
-// components. The roundings of the test are relative, a few ulp; the slack covers them.
+// Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir
+// by components. The roundings of the test are relative, a few ulp; the slack covers them.
 fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
     let base = (*walk).base;
     let inverse = (*walk).inverse;

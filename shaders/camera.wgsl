@@ -27,8 +27,8 @@ fn from_pixel(ray: Ray, anchor: vec2i) -> vec2f {
 //#end
 }
 
-// The ray through a pixel, (0, 0) at the bottom left. Near the viewpoint's own column and row (CAMERA_ANCHOR) w.x and w.y
-// are small, and keep their relative accuracy.
+// The ray through a pixel, (0, 0) at the bottom left. Near the viewpoint's own column and row (CAMERA_ANCHOR) w.x and
+// w.y are small, and keep their relative accuracy.
 //#if samples
 fn camera_getdir(pixel: vec2i, offset: vec2f) -> Ray {
     var ray: Ray;
@@ -65,8 +65,8 @@ fn camera_setpix(color: vec3f) -> u32 {
 //#end
 //#if barrier
 
-// Keeps the compiler from looking through: what stands behind this was rounded as it is, whatever the driver does with the
-// rest. `dispatch.zero` is 0, which only the host knows.
+// Keeps the compiler from looking through: what stands behind this was rounded as it is, whatever the driver does with
+// the rest. `dispatch.zero` is 0, which only the host knows.
 //#if certified
 fn barrier(v: vec3f) -> vec3f {
     return bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(dispatch.zero));

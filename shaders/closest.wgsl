@@ -92,7 +92,8 @@ fn find_closest_object(ray: Ray) -> Hit {
     }
 //#end
 //#if screen_grid
-    // Those that may be seen in this cell of the screen, the nearest first: once one is hit, those farther off do not count.
+    // Those that may be seen in this cell of the screen, the nearest first: once one is hit, those farther off do not
+    // count.
     let cell = u32(ray.pixel.y) / CELL_HEIGHT * GRID_COLUMNS + u32(ray.pixel.x) / CELL_WIDTH;
     let first = screen_grid[cell];
     let end = screen_grid[cell + 1u];

@@ -46,7 +46,7 @@ fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
             return Shadow(vec3f(0.0), false);
 //#end
         }
-        // Never flushed to nothing: the glint shines through however little else does.
+        // The product is kept above 0, so that it is never flushed: the glint shines through however little else does.
         transmittance = max(transmittance * (materials[tile_material(blocker)].tint * material.transparency), vec3f(0x1p-120f));
         roundings += 4.0; //~
         range.skip = blocker.group;
@@ -189,7 +189,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#end
 //#if certified
     if !sure {
-        // It may bring nothing at all.
+        // The light may bring nothing at all, so the whole colour counts as error.
         shade.error += shade.color;
     }
 //#end

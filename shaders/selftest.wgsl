@@ -45,7 +45,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let y = bitcast<f32>(b);
     let sum = two_sum(x, y);
     let product = two_prod(x, y);
-    // Not folded before the driver sees it, but perhaps by the driver.
+    // This product is not folded before the driver sees it; the driver may fold it.
     var folded = LITERAL_0;
     folded *= LITERAL_1;
     let at = id.x * RESULTS / 4u;

@@ -84,8 +84,8 @@ struct ClosestApproach {
     apart: f32,
     // Where along the ray that is.
     along: f32,
-    // How far the perpendicular, as a vector, and `along` may be off. Where the ray meets the sphere, that is, or seems to:
-    // the bound takes the perpendicular for no longer than the radius.
+    // How far the perpendicular, as a vector, and `along` may be off. Where the ray meets the sphere, that is, or seems
+    // to: the bound takes the perpendicular for no longer than the radius.
     off: f32, //~
 }
 
@@ -123,7 +123,8 @@ fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Int
     var out = (disc < -disc_error) | (t < -error) | (sphere.group == range.skip);
     intersection.hit = !out & (disc > disc_error) & (t > error);
 //#if lights_on_surface
-    // From outside, a light on the sphere is where the ray would enter it: at the light, not before; or where it leaves.
+    // From outside, a light on the sphere is where the ray would enter it: at the light, not before; or where it
+    // leaves.
     let on_surface = (sphere.lights_on_surface & range.light) != 0u;
     let entry = range.limit - approach.along;
     out |= on_surface & (entry < -(range.limit_error + error));

@@ -204,7 +204,7 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
         // The half keeps the quotient away from whole numbers, whatever its rounding.
         p -= size * floor((p + 0.5) / size);
     }
-    // An edge may be overshot.
+    // The index may overshoot an edge by its error.
     let place = vec2u(clamp(p, vec2f(0.0), size - 1.0));
     let packed = texels[plane.first + place.y * plane.size.x + place.x];
     return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) * 0x1p-8f;

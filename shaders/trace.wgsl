@@ -2,10 +2,10 @@
 // on the CPU: src/certify/lanes/shade.rs. Referee: src/cpu/trace.rs.
 
 //#if counted
-// Iterations of the loops so far, of all samples, the last one of each, which only finds the end, included: the driver may
-// end loops early that go round too often (lavapipe counts 65,535 for all loops together, and for all invocations that it
-// runs as the lanes of one vector), so a pixel that comes near is handed to the CPU. Loops that go round differently in
-// different lanes count for all LANES.
+// Iterations of the loops so far, of all samples, the last one of each, which only finds the end, included: the driver
+// may end loops early that go round too often (lavapipe counts 65,535 for all loops together, and for all invocations
+// that it runs as the lanes of one vector), so a pixel that comes near is handed to the CPU. Loops that go round
+// differently in different lanes count for all LANES.
 var<private> steps: u32;
 const STEPS_LIMIT = 50000u;
 //#end
@@ -42,7 +42,8 @@ struct Traced {
 //#if any_object
 //#if certified
 
-// Whether the primary ray's hit leaves nothing to look at: nothing is met, or it is in doubt what; `traced` then is all.
+// Whether the primary ray's hit leaves nothing to look at: nothing is met, or it is in doubt what; `traced` then is
+// all.
 fn hit_decides(traced: ptr<function, Traced>, ray: Ray, hit: Hit) -> bool {
 //#if ambient_only
     // So far away that the byte is 0, whatever is hit.

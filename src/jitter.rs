@@ -22,7 +22,8 @@ pub fn hash(x: u32, y: u32, sample: u32) -> [f64; 2] {
     [p, q].map(|v| f64::from(v >> 22) / 1024.0 - 0.5)
 }
 
-/// The state of C's `random()` as glibc seeds it by default: an additive feedback of 31 words, r_i = r_{i−3} + r_{i−31}.
+/// The state of C's `random()` as glibc seeds it by default: an additive feedback of 31 words, r_i = r_{i−3} +
+/// r_{i−31}.
 #[derive(Debug, Clone)]
 struct Random {
     words: [u32; 31],
@@ -78,8 +79,8 @@ pub struct Course {
 const MAX_CHECKPOINTS: u32 = 1 << 16;
 
 impl Course {
-    /// Runs through the sequence once for the rows up to `rows`, as rows below have to be counted though they may not be
-    /// rendered. Two nanoseconds an offset or so.
+    /// Runs through the sequence once for the rows up to `rows`, as rows below have to be counted though they may not
+    /// be rendered. Two nanoseconds an offset or so.
     pub fn new(width: u32, rows: u32, samples: u32) -> Self {
         let stride = rows.div_ceil(MAX_CHECKPOINTS).max(1);
         let mut random = Random::new();

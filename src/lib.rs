@@ -14,8 +14,8 @@
 //!
 //! [`edit`] stands beside the first line: changes on top of a scene, and into its text.
 //!
-//! [`render::render`] runs the whole of it, [`mod@bench`] measures it, [`probe`] explains a pixel of it, `preview` shows it in a
-//! window; `src/cli/` only turns arguments into such calls.
+//! [`render::render`] runs the whole of it, [`mod@bench`] measures it, [`probe`] explains a pixel of it, `preview`
+//! shows it in a window; `src/cli/` only turns arguments into such calls.
 
 pub mod bench;
 pub mod certify;

@@ -10,7 +10,8 @@ fn main() -> ExitCode {
 }
 
 /// Without XDG_RUNTIME_DIR (services, containers, `env -i`) Mesa's Vulkan layer that chooses among devices complains on
-/// stderr, whatever is asked of us. It asks the desktop which device to prefer; we choose by ourselves, so it may stay out.
+/// stderr, whatever is asked of us. It asks the desktop which device to prefer; we choose by ourselves, so it may stay
+/// out.
 #[allow(
     unsafe_code,
     reason = "a layer's switch is an environment variable, and setting one is unsafe"

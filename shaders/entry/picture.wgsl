@@ -45,8 +45,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if samples
     var traced: Traced;
 //#if partial
-    // The same of the samples that are worth keeping should the pixel be doubtful: their bits, and how many they are. What
-    // is not among them, for whatever reason, the CPU adds.
+    // The same of the samples that are worth keeping should the pixel be doubtful: their bits, and how many they are.
+    // What is not among them, for whatever reason, the CPU adds.
     var part: Traced;
     var summed: array<u32, SUMMED_WORDS>;
     var kept = 0u;

@@ -18,8 +18,8 @@ const CACHES: [&str; 3] = [
     "__GL_SHADER_DISK_CACHE_PATH",
 ];
 
-/// Runs `program render` on a scene's file with these options, up to three times twice: in a new folder for caches, and again
-/// in the same. The picture goes to a PPM file in that folder. Returns both times.
+/// Runs `program render` on a scene's file with these options, up to three times twice: in a new folder for caches, and
+/// again in the same. The picture goes to a PPM file in that folder. Returns both times.
 ///
 /// # Errors
 /// What the program or the system says.

@@ -1,7 +1,7 @@
 //! Runs a shader over rows of a picture, one dispatch after the other, and hands on what it wrote.
 //!
-//! For the shaders that only this report has. They share `gpu`'s uniform [`Dispatch`] and nothing else with `gpu::bands`, which
-//! does much more: overlapping, assembling, verdicts.
+//! For the shaders that only this report has. They share `gpu`'s uniform [`Dispatch`] and nothing else with
+//! `gpu::bands`, which does much more: overlapping, assembling, verdicts.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -36,8 +36,8 @@ pub struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    /// For pictures that are `width` pixels wide. `bind` binds the dispatch's record and the pixels that it is given, with what else the
-    /// shader reads.
+    /// For pictures that are `width` pixels wide. `bind` binds the dispatch's record and the pixels that it is given,
+    /// with what else the shader reads.
     pub fn new(
         gpu: &'a Gpu,
         pipeline: &'a wgpu::ComputePipeline,
@@ -97,8 +97,8 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Runs over all rows below `height`, from the top, and hands on each piece, its top row first. Returns the seconds that
-    /// the dispatches took: by the device's clock where it has one, else as waited for.
+    /// Runs over all rows below `height`, from the top, and hands on each piece, its top row first. Returns the seconds
+    /// that the dispatches took: by the device's clock where it has one, else as waited for.
     pub fn frame(&self, height: u32, mut take: impl FnMut(&[u8])) -> Result<f64, GpuError> {
         let width = u64::from(self.width);
         let mut pixels = FIRST;

@@ -62,8 +62,9 @@ pub struct TError {
 }
 
 impl TError {
-    /// Compares first hits with the true ones, of which each comes with how far its t may be off; both are of the same pixels,
-    /// in the same order. That is added to the error, which is never more than said. None where not one is hit in both.
+    /// Compares first hits with the true ones, of which each comes with how far its t may be off; both are of the same
+    /// pixels, in the same order. That is added to the error, which is never more than said. None where not one is hit
+    /// in both.
     #[must_use]
     pub fn new(truth: &[(PixelHit, f64)], hits: &[PixelHit]) -> Option<Self> {
         let mut errors = Vec::new();

@@ -20,7 +20,7 @@ pub fn wgsl(packed: &Packed, settings: &Settings, lanes: u32) -> Option<(String,
     if !features.any_object() {
         return None;
     }
-    // Four words a pixel; the bounds of certified pixels stay.
+    // Pixels are four words then; the bounds of certified pixels stay in the text.
     features.values = true;
     let wgsl = compose(packed, &features, Entry::FirstHit);
     Some((wgsl, features))

@@ -7,8 +7,8 @@ pub(super) const LINE: f64 = 7.0;
 /// About the width of a character.
 const LETTER: f64 = 6.4;
 
-/// Where the labels of points stand (left, top, right, bottom): the first place around its point where a label covers neither
-/// another one nor a marker, or else one that covers no label.
+/// Where the labels of points stand (left, top, right, bottom): the first place around its point where a label covers
+/// neither another one nor a marker, or else one that covers no label.
 pub(super) fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -> Vec<[f64; 4]> {
     let marks: Vec<[f64; 4]> = places
         .iter()

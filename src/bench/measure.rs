@@ -169,7 +169,7 @@ impl Subject<'_> {
             frames.push(frame.seconds);
             kernels.push(frame.report.seconds.phases.get(Phase::Trace));
         }
-        // The truth about t is this way's own.
+        // The true distances are those of this way, so it is compared with itself.
         let hits: Vec<PixelHit> = self.hits.iter().map(|(seen, _)| *seen).collect();
         Ok(Measured {
             picture: warm_up.picture,

@@ -8,8 +8,8 @@
 //!          kernel, frame, processes (cold) ──┘
 //! ```
 //!
-//! [`ways`] names the ways, [`textbook`] has the two that nobody should render with, [`dispatch`] runs what is no shader of
-//! `shaders/` on its own: those two, and [`first_hit`], which asks our own shaders for t.
+//! [`ways`] names the ways, [`textbook`] has the two that nobody should render with, [`dispatch`] runs what is no
+//! shader of `shaders/` on its own: those two, and [`first_hit`], which asks our own shaders for t.
 
 pub mod cold;
 pub mod dispatch;

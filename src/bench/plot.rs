@@ -1,5 +1,5 @@
-//! The report as a picture: time across, error up, a panel a scene, a point a way, and the front that nothing beats. Told apart
-//! by shape and fill, so that black and white will do.
+//! The report as a picture: time across, error up, a panel a scene, a point a way, and the front that nothing beats.
+//! Told apart by shape and fill, so that black and white will do.
 
 use super::labels::{LINE, MARK, labels};
 use super::statistics::pareto;
@@ -130,7 +130,7 @@ impl Axes {
         Self {
             frame: [x + left, y + top, x + PANEL.0 - right, y + PANEL.1 - bottom],
             time,
-            // From a pixel to all of them.
+            // The axis runs from one pixel to all of them.
             error: [pixel.min(1.0), 2.0],
         }
     }

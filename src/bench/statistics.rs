@@ -1,5 +1,5 @@
-//! Medians, quantiles, spreads, and which points of a plane nothing beats. Pure functions over what `measure` and `error`
-//! collect.
+//! Medians, quantiles, spreads, and which points of a plane nothing beats. Pure functions over what `measure` and
+//! `error` collect.
 
 use serde::Serialize;
 
@@ -48,7 +48,7 @@ pub fn quantile(sorted: &[f64], q: f64) -> Option<f64> {
     let below = place.floor() as usize;
     let (a, b) = (sorted[below], sorted[(below + 1).min(last)]);
     let share = place - below as f64;
-    // Not a·(1−s) + b·s: between equals, and infinities, there is nothing to mix.
+    // Equal values are returned as they are: between two infinities a + (b − a)·s would be NaN.
     Some(if a == b { a } else { a + (b - a) * share })
 }
 

@@ -199,7 +199,7 @@ pub fn short(value: f64) -> String {
     if !size.is_finite() {
         return value.to_string();
     }
-    // As it is when rounded: 9.999 has four digits before the point's place is known.
+    // The limits are those of the rounded number: 9.999 is printed as 10.00 would be.
     let digits = |decimals: usize| format!("{value:.decimals$}");
     match size {
         1e6.. => format!("{value:.2e}"),

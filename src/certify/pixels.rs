@@ -21,8 +21,8 @@ use crate::settings::Settings;
 /// others, and those stand side by side.
 const PIECE: usize = 16;
 
-/// So few pixels are decided by who asks: where the GPU is the CPU, waking another thread takes longer, measured 1 to
-/// 20 ms.
+/// Up to this many pixels are decided on the calling thread: where the GPU is the CPU, waking another thread takes
+/// longer (1 to 20 ms were measured).
 const FEW: usize = 128;
 
 /// What it takes to trace a pixel of a scene on the CPU.
@@ -157,7 +157,8 @@ impl<'a> PixelDecider<'a> {
         let mut rgb = vec![0; 3 * pixels];
         let mut values = vec![[0.0; 3]; if self.values { pixels } else { 0 }];
         let mut verdicts = vec![DecidedBy::Gpu; if self.verdicts { pixels } else { 0 }];
-        // Pieces of rows, small enough to share out, large enough not to cost.
+        // Rows are cut into pieces: small enough for all threads to get some, large enough that handing them out costs
+        // nothing.
         let piece = (pixels / (8 * rayon::current_num_threads()))
             .clamp(64, 8192)
             .next_multiple_of(LANES)
@@ -223,7 +224,7 @@ impl<'a> PixelDecider<'a> {
             let start = chunk * LANES;
             let eight = lanes.map(|lanes| lanes.row((first + start) as u32, y));
             let eight = eight.unwrap_or_default();
-            // Also those that are not sure: they are decided below.
+            // Bytes of pixels that are not sure are copied too; those pixels are decided below.
             bytes.copy_from_slice(&eight.bytes.as_flattened()[..bytes.len()]);
             let sure = &eight.sure[..bytes.len() / 3];
             let quick = sure.iter().filter(|sure| **sure).count();

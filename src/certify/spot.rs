@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(whole.len(), 75);
         let mut from_whole: Vec<_> = whole.iter().map(|p| at(width, &(0..height), *p)).collect();
         let mut from_bands = Vec::new();
-        // High enough that each band has some of its own.
+        // Bands of this height each have some pixels to check.
         for start in (0..height).step_by(96) {
             let rows = start..start + 96;
             from_bands.extend(

@@ -44,7 +44,7 @@ pub fn revoke(gpu: &Gpu, folder: Option<&Path>) {
     let note = note(gpu);
     passed().remove(&note);
     if let Some(folder) = folder {
-        // What is not there is forgotten already.
+        // A file that is missing needs no removing.
         let _ = fs::remove_file(file(&note, folder));
     }
 }
@@ -88,7 +88,7 @@ fn remember(note: &str, folder: Option<&Path>) {
     }
 }
 
-/// Beside and renamed, so that nobody reads half of it.
+/// Writes the note under another name and renames it, so that nobody reads half of it.
 fn write(note: &str, folder: &Path) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     let mut beside = tempfile::NamedTempFile::new_in(folder)?;
@@ -148,7 +148,7 @@ pub(crate) mod tests {
         gpu.tells_version = true;
         assert_eq!(doubts(&gpu, Some(folder.path())), None);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        // It would fail now, if it were asked.
+        // The device would fail the test now, if it were tested.
         selftest::tests::spoil_next(Some(0));
         assert_eq!(doubts(&gpu, Some(folder.path())), None);
         revoke(&gpu, Some(folder.path()));

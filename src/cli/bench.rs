@@ -81,7 +81,7 @@ pub(crate) struct Args {
 
 /// Measures the scenes.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
-    // Before anything takes time: whatever is wrong with any of the arguments.
+    // All arguments are checked first, before anything takes time.
     let target = args
         .plot
         .as_ref()

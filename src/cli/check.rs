@@ -82,7 +82,7 @@ fn report(name: &str, loaded: &Result<Scene>) -> Value {
         Err(error) => {
             let errors = match error.downcast_ref::<LoadError>() {
                 Some(LoadError::Scene(diagnostics)) => diagnostics.to_json(),
-                // Not even read: the message has no place in the file.
+                // The file could not be read, so the message has no place in it.
                 _ => json!([{
                     "file": name,
                     "line": null,

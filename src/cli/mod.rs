@@ -165,7 +165,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    // Without a handler Ctrl-C would only lack its tidying up: no reason not to start.
+    // Without a handler Ctrl-C only leaves an unfinished file behind, which is no reason not to start.
     if let Err(error) = ctrlc::set_handler(interrupted) {
         log::warn!("Ctrl-C may leave an unfinished file: {error}");
     }

@@ -70,7 +70,7 @@ impl PictureFile {
 
     /// What an error of [`PictureFile::write`] means, when it comes back from the rendering.
     pub(crate) fn failed(self, source: io::Error) -> anyhow::Error {
-        // One that `opened` gave comes back as it was.
+        // An error that came from `opened` is returned as it was.
         match source.downcast::<OutputError>() {
             Ok(error) => error.into(),
             Err(source) => OutputError::Write {

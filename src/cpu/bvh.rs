@@ -10,13 +10,13 @@ pub fn at_most<R: Real>(number: R) -> f64 {
     if most.is_nan() { f64::INFINITY } else { most }
 }
 
-/// Calls `test` with the index of each sphere of the tree that the ray from `base` along `dir` may hit, near boxes first,
-/// as long as they are entered no farther than at `reach`. `test` returns the new reach, in units of `dir`.
+/// Calls `test` with the index of each sphere of the tree that the ray from `base` along `dir` may hit, near boxes
+/// first, as long as they are entered no farther than at `reach`. `test` returns the new reach, in units of `dir`.
 ///
-/// The boxes are asked in f64, whatever the tracer's number type is, and the ray is known as well as that type knows it: a
-/// point at s on it is off by no more than base's error and s times that of `dir`. All that is in the tree is nearer than
-/// a distance that its root tells, so the boxes are widened by what that can be; if it is more than it is worth, the ray is
-/// `Undecided`.
+/// The boxes are asked in f64, whatever the tracer's number type is, and the ray is known as well as that type knows
+/// it: a point at s on it is off by no more than base's error and s times that of `dir`. All that is in the tree is
+/// nearer than a distance that its root tells, so the boxes are widened by what that can be; if it is more than it is
+/// worth, the ray is `Undecided`.
 pub fn bvh_hits<R: Real>(
     bvh: &Bvh,
     base: V3<R>,
@@ -34,7 +34,7 @@ pub fn bvh_hits<R: Real>(
     for (slack, (base, dir)) in slack.iter_mut().zip(base.iter().zip(&dir)) {
         // A component that is replaced below is off by twice as much as its replacement.
         *slack = 1.01 * (base.error + farthest / longest * (dir.error + 2e-30));
-        // A NaN is no less than anything.
+        // A NaN fails this comparison too, and so leaves the ray undecided.
         let narrow = *slack < 1e-3 * farthest;
         if !narrow {
             return Err(Undecided);

@@ -143,15 +143,16 @@ fn shadow<R: Real>(
     Ok(Ok(transmittance))
 }
 
-/// Of surfaces met at the same place only the first in the file: seen from there the others are at t = 0, a miss.
+/// Keeps one surface for each place where surfaces are met, the first in the file: seen from there the others are at
+/// t = 0, which is a miss.
 fn one_at_a_place<R: Real>(
     world: &World<R>,
     mut hits: Vec<SecondaryHit<R>>,
 ) -> Result<Vec<Point<R>>, Undecided> {
-    // Of coincident surfaces that is decided already.
+    // Which of several coincident surfaces is met is decided once a scene.
     hits.sort_unstable_by_key(|hit| (world.groups[hit.point.object], hit.point.object));
     hits.dedup_by_key(|hit| world.groups[hit.point.object]);
-    // Nearly in order, so that putting them in order exactly takes one comparison each.
+    // Sorting by f64 puts them nearly in order, so that the exact order takes one comparison each.
     hits.sort_by(|a, b| a.t.to_f64().total_cmp(&b.t.to_f64()));
     let mut kept: Vec<SecondaryHit<R>> = Vec::with_capacity(hits.len());
     for next in hits {

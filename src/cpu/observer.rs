@@ -1,4 +1,4 @@
-//! How a colour comes about, for those who want to know: `plumb probe` listens, rendering does not.
+//! How a colour comes about, told step by step: `plumb probe` listens, rendering does not.
 
 use super::light::Lit;
 use super::surface::Point;
@@ -49,8 +49,8 @@ pub enum Unmet {
 
 /// Sees how a colour comes about: `plumb probe` listens, rendering does not.
 ///
-/// Rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then the mirror
-/// image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
+/// Rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then the
+/// mirror image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
 pub trait TraceObserver<R> {
     /// `ray` met nothing; had it a number, that is `number`.
     fn missed(&mut self, number: u32, ray: &Branch<R>, why: Unmet) {
@@ -74,7 +74,7 @@ pub trait TraceObserver<R> {
     }
 }
 
-/// Nobody listens.
+/// An observer that ignores everything.
 #[derive(Debug, Clone, Copy)]
 pub struct Unobserved;
 

@@ -1,7 +1,7 @@
 //! A pixel from its samples: the notes' `make_pixel`, in the number types that it takes to be sure of it.
 //!
-//! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that are
-//! exact in the end.
+//! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that
+//! are exact in the end.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -75,13 +75,14 @@ fn color<R: Real>(scene: &Prepared<R>, limits: &Limits, x: f64, y: f64) -> Resul
 pub struct FirstHit {
     /// Index of the object in the scene.
     pub object: usize,
-    /// How far that is from the viewpoint, in world units, and how far off this may be: infinite where the hit is presumed.
+    /// How far that is from the viewpoint, in world units, and how far off this may be: infinite where the hit is
+    /// presumed.
     pub t: Bounded,
     /// Where, in world coordinates.
     pub at: DVec3,
 }
 
-/// In one number type; f64 takes itself for exact.
+/// The first hit, computed in one number type. Plain f64 takes itself for exact.
 fn first_hit<R: Real>(
     scene: &Scene,
     prepared: &Prepared<R>,
@@ -105,8 +106,8 @@ fn first_hit<R: Real>(
 /// What is added to the error of a part: more than all that was flushed to 0 in its sums.
 const FLUSHED: f64 = 1.0 / (1_u128 << 100) as f64;
 
-/// The scene on the CPU: f64 with error bounds decides nearly every pixel, and exact numbers decide the others. Only a pixel
-/// that is too much for these is presumed.
+/// The scene on the CPU: f64 with error bounds decides nearly every pixel, and exact numbers decide the others. Only a
+/// pixel that is too much for these is presumed.
 #[derive(Debug)]
 pub struct ExactTracer<'a> {
     scene: &'a Scene,
@@ -197,7 +198,8 @@ impl<'a> ExactTracer<'a> {
             Err(Fault::Undecided) => {}
         }
         if !matches!(sampling, Sampling::Once) {
-            // The samples that need it alone, and their mean in f64.
+            // Only the samples that f64 leaves open are traced in exact numbers; their mean is taken in f64 with
+            // bounds.
             let v = self.mean_bounded(limits, sampling, x, y, |_| true);
             match v.and_then(|(v, by)| Ok(self.decided(v, by)?)) {
                 Ok(decided) => return Ok(decided),
@@ -217,7 +219,7 @@ impl<'a> ExactTracer<'a> {
                 match v.and_then(|v| Ok(self.decided(v, DecidedBy::Presumed)?)) {
                     Ok(decided) => Ok(decided),
                     Err(Fault::TooManyRays) => Err(fault),
-                    // Not a number even so.
+                    // Even plain f64 gives no number here.
                     Err(Fault::Undecided) => Ok(Decided {
                         value: [0.0; 3],
                         bytes: [0; 3],
@@ -228,7 +230,8 @@ impl<'a> ExactTracer<'a> {
         }
     }
 
-    /// Pixel (x, y), of which a part is known: only the other samples are traced. None where that does not tell its bytes.
+    /// Pixel (x, y), of which a part is known: only the other samples are traced. None where that does not tell its
+    /// bytes.
     pub fn complete(
         &self,
         limits: &Limits,
@@ -335,8 +338,8 @@ impl<'a> ExactTracer<'a> {
         (result, by)
     }
 
-    /// What the ray through (x, y) hits first, counted from the bottom left, with fractions between pixels, in the cheapest
-    /// numbers that tell; undecided only where exact numbers and f64 both do not.
+    /// What the ray through (x, y) hits first, counted from the bottom left, with fractions between pixels, in the
+    /// cheapest numbers that tell; undecided only where exact numbers and f64 both do not.
     pub fn first_hit(&self, at: [f64; 2]) -> Result<Option<FirstHit>, Undecided> {
         if let Ok(hit) = first_hit(self.scene, &self.bounded, at) {
             return Ok(hit);

@@ -65,9 +65,9 @@ pub fn sphere_hits_from<R: Real>(
 
 /// H − C at the nearer hit, in units of 2^scale.
 ///
-/// With U = W − W_c: H − C = s·U + (s/s_c − 1)·C, and s/s_c − 1 = −(|W_c|·(e·U + √disc) + U·U)/W·W, where
-/// s/s_c − 1 is not taken as a difference: away from the limb the vector is as accurate, against the radius, for a sphere
-/// that is small and far as for one that is near.
+/// With U = W − W_c: H − C = s·U + (s/s_c − 1)·C, and s/s_c − 1 = −(|W_c|·(e·U + √disc) + U·U)/W·W, where s/s_c − 1 is
+/// not taken as a difference: away from the limb the vector is as accurate, against the radius, for a sphere that is
+/// small and far as for one that is near.
 pub fn sphere_from_center<R: Real>(
     camera: &Camera<R>,
     sphere: &Sphere<R>,

@@ -131,7 +131,7 @@ pub fn locate<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Point
     let zero = V3::new(R::zero(), R::zero(), R::zero());
     let object = hit.object;
     if scene.world.is_none() && matches!(scene.surfaces[object], Surface::Plain) {
-        // Nothing asks where the hit is.
+        // Neither the surface nor a light asks where the hit is.
         return Point {
             object,
             position: zero,
@@ -274,7 +274,8 @@ impl<R: Real> Tree<'_, R> {
         Ok(())
     }
 
-    /// Whether the colour is certainly at least `enough` in all channels, so that the other rays cannot change the bytes.
+    /// Whether the colour is certainly at least `enough` in all channels, so that the other rays cannot change the
+    /// bytes.
     fn saturated(&self, enough: f64) -> bool {
         let color = self.color;
         enough.is_finite()

@@ -68,8 +68,8 @@ pub fn closest_hit<R: Real>(
     Ok(closest)
 }
 
-/// Calls `take` with everything that the ray meets in range, in no order. `take` returns how far hits still matter; below
-/// 0 it is told of no more of them.
+/// Calls `take` with everything that the ray meets in range, in no order. `take` returns how far hits still matter;
+/// below 0 it is told of no more of them.
 pub fn hits_from<R: Real>(
     world: &World<R>,
     base: V3<R>,

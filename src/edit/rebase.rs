@@ -31,9 +31,9 @@ type Identity<'s> = (&'static str, &'s str, usize);
 impl Changes {
     /// Moves the changes from the scene `old` to the scene `new`, which the file has become under them.
     ///
-    /// A change stays where its entity is still there, the n-th of its type and name (the camera whatever its name), and
-    /// the file's own value is what it was; its index becomes that of the new scene. Otherwise the file counts, and the
-    /// change is returned with the reason. A change to what the file now says itself, as after saving, is dropped
+    /// A change stays where its entity is still there, the n-th of its type and name (the camera whatever its name),
+    /// and the file's own value is what it was; its index becomes that of the new scene. Otherwise the file counts, and
+    /// the change is returned with the reason. A change to what the file now says itself, as after saving, is dropped
     /// without a word.
     ///
     /// Takes time in the number of entities and changes.

@@ -1,4 +1,5 @@
-//! What can be changed of a scene, and where that is in a [`Scene`]: the keys and values of [`Changes`](super::Changes).
+//! What can be changed of a scene, and where that is in a [`Scene`]: the keys and values of
+//! [`Changes`](super::Changes).
 
 use glam::DVec3;
 

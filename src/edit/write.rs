@@ -44,8 +44,8 @@ impl Changes {
     /// makes of the scene of `text`, to the last bit.
     ///
     /// Only numbers whose value changes are exchanged. Where an attribute is not given, it is added to the block in the
-    /// layout of its neighbours; where `specular` is one number for all three and they come to differ, it becomes three.
-    /// Everything else, comments, order and the ends of lines, stays byte for byte. Textures are not read.
+    /// layout of its neighbours; where `specular` is one number for all three and they come to differ, it becomes
+    /// three. Everything else, comments, order and the ends of lines, stays byte for byte. Textures are not read.
     ///
     /// # Errors
     /// When the text has mistakes, or has not what is changed, or would become too large.
@@ -141,7 +141,7 @@ fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -
     let next_start = next.map_or(place.close, |next| next.key.start);
     let break_after = text[end..next_start].iter().position(is_break);
     let line = match line_of(text, place, anchor) {
-        // A line of its own, where the neighbour has one.
+        // The attribute gets a line of its own where its neighbour has one.
         Some(line) if break_after.is_some() || next.is_none() => line,
         _ => {
             let previous = index.checked_sub(1).and_then(|index| given.get(index));
@@ -162,7 +162,7 @@ fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -
             });
         }
     };
-    // Behind a comment that the neighbour's line ends with.
+    // The new text goes behind the comment, if any, that ends the neighbour's line.
     let at = end + break_after.unwrap_or(0);
     let line_end = match break_after {
         Some(_) if text[at..].starts_with(b"\r\n") => &text[at..at + 2],
@@ -188,7 +188,7 @@ fn entry(gap: &[u8], reflectivity: Reflectivity, values: &[f64]) -> Vec<u8> {
 /// The indentation of the line that an attribute of a block begins; nothing if it does not begin one. Its start is not
 /// 0, as the line before ends there.
 fn line_of(text: &[u8], place: &Place, given: &Given) -> Option<Range<usize>> {
-    // Not further back than the block, so that a file on one line takes linear time.
+    // The search goes no further back than the block, so that a file on one line takes linear time.
     let inside = place.open..given.key.start;
     let line_end = text[inside].iter().rposition(is_break)?;
     let indentation = place.open + line_end + 1..given.key.start;

@@ -111,7 +111,7 @@ fn instance() -> &'static wgpu::Instance {
 /// All adapters, those that plumb prefers first.
 fn enumerate() -> Vec<wgpu::Adapter> {
     let mut adapters = pollster::block_on(instance().enumerate_adapters(wgpu::Backends::PRIMARY));
-    // Stable: among equals the system's own order stays.
+    // The sort is stable, so that adapters of equal rank stay in the system's order.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     adapters
 }

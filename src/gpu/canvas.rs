@@ -86,7 +86,7 @@ impl Scatter {
     /// Compiles its shader.
     ///
     /// # Errors
-    /// As any shader may fail to compile.
+    /// If the shader does not compile.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let pipeline = gpu.compile(SCATTER, "main")?;
         Ok(Self { pipeline })

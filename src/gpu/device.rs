@@ -51,7 +51,7 @@ fn watch(device: &wgpu::Device, trouble: &Arc<Mutex<Trouble>>) {
         let mut trouble = errors.lock().unwrap_or_else(PoisonError::into_inner);
         match error {
             wgpu::Error::OutOfMemory { source } => trouble.memory.get_or_insert(source.to_string()),
-            // A frame of a window is lost; the next one tries again.
+            // Only one frame of the window is lost, and the next frame tries again.
             other if is_of_a_stale_surface(&other.to_string()) => return,
             other => trouble.refused.get_or_insert(other.to_string()),
         };

@@ -44,7 +44,7 @@ impl SceneBuffers {
         let features = set.features();
         let has = |feature: Feature| features.contains(&feature);
         let buffers = upload(gpu, packed, &features)?;
-        // These, the pixels, and perhaps the samples' offsets.
+        // The shader reads these buffers, writes the pixels, and perhaps reads the samples' offsets.
         let needed = buffers.len() as u32 + 1 + u32::from(has(Feature::Course));
         let allowed = gpu.device.limits().max_storage_buffers_per_shader_stage;
         if needed > allowed {
@@ -85,7 +85,8 @@ impl Pipeline {
         }
     }
 
-    /// Binds the scene, a dispatch's record, a buffer for its pixels, and one for the offsets of its samples if they are read.
+    /// Binds the scene, a dispatch's record, a buffer for its pixels, and one for the offsets of its samples if they
+    /// are read.
     pub fn bind(
         &self,
         gpu: &Gpu,
@@ -130,7 +131,7 @@ impl Compiled {
             pipelines.push_back((text, pipeline.clone()));
             return Ok(pipeline);
         }
-        // Others may go on with theirs meanwhile.
+        // The lock is released while this shader compiles, so that other threads can go on.
         drop(pipelines);
         let pipeline = gpu.compile(wgsl, "main")?;
         let mut pipelines = lock();

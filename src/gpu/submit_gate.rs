@@ -1,4 +1,4 @@
-//! Who may hand work to the device: everybody, but while a window's surface is set up anew nobody.
+//! A gate for submissions to the device: it is closed while a window's surface is set up anew, and open otherwise.
 //!
 //! wgpu waits for the device to be idle then, and fails if another thread hands in work meanwhile.
 
@@ -24,7 +24,8 @@ impl SubmitGate {
         submit()
     }
 
-    /// From now on nobody hands work in: who wants to waits until [`open`](Self::open). Who closes must not itself.
+    /// Closes the gate: whoever wants to submit work waits until [`open`](Self::open). The thread that closes it must
+    /// not submit anything itself.
     pub fn close(&self) {
         *self.lock() = true;
     }

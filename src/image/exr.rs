@@ -76,7 +76,7 @@ impl Exr {
             let [r, g, b] = values[y * width + x];
             (r, g, b)
         };
-        // What every reader knows; the order of lines is fixed so that the same picture is the same file.
+        // Every reader knows this encoding. The order of lines is fixed, so that the same picture is the same file.
         let encoding = Encoding {
             compression: Compression::ZIP16,
             blocks: Blocks::ScanLines,

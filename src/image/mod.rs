@@ -110,7 +110,7 @@ mod tests {
         for path in ["a", "a.jpg", "ppm", ".png", "a.png/"] {
             let known = Format::from_path(Path::new(path));
             if path == "a.png/" {
-                // A folder's name; opening it is what tells.
+                // The name ends as a folder's does; only opening it will tell.
                 assert!(known.is_ok());
                 continue;
             }

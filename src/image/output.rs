@@ -54,8 +54,8 @@ pub struct Metadata {
 }
 
 impl Metadata {
-    /// What changes the bytes of a scene's picture, and by which software it was made; no date and no path, so that the same
-    /// picture is the same file.
+    /// What changes the bytes of a scene's picture, and by which software it was made; no date and no path, so that the
+    /// same picture is the same file.
     pub fn of(software: &str, name: &str, scene: &Scene, settings: &Settings) -> Self {
         let [width, height] = scene.camera.pixeldim;
         let rows = settings.rows_of(height);
@@ -90,7 +90,8 @@ impl Metadata {
         Self { entries }
     }
 
-    /// Checks what PNG and EXR ask of keys and texts, for every format alike: what can be told in one can be told in all.
+    /// Checks what PNG and EXR ask of keys and texts, for every format alike: what can be told in one can be told in
+    /// all.
     fn check(&self) -> Result<(), OutputError> {
         for (index, (key, text)) in self.entries.iter().enumerate() {
             let problem = if key.is_empty() || key.len() > 79 {
@@ -192,7 +193,7 @@ impl Output {
         if width == 0 || rows == 0 {
             return Err(size("it has no pixels".into()));
         }
-        // In memory first, so that the file is created only when nothing but the system can say no.
+        // The encoder is made in memory first, so that the file is created only when nothing but the system can fail.
         let mut encoder = match format {
             Format::Ppm => Encoder::Ppm,
             Format::Png if width.max(rows) > PNG_MOST => {
@@ -242,7 +243,8 @@ impl Output {
         })
     }
 
-    /// Whether nothing reaches the target before [`finish`](Output::finish); devices, pipes and stdout are written through.
+    /// Whether nothing reaches the target before [`finish`](Output::finish); devices, pipes and stdout are written
+    /// through.
     #[must_use]
     pub fn is_beside(&self) -> bool {
         self.to.sink.is_beside()

@@ -56,8 +56,8 @@ impl Write for Gathered {
 impl Png {
     /// Starts a PNG of `width` × `height` pixels (both at least 1 and below 2³¹) with these texts.
     ///
-    /// Deflate's first level behind the Paeth filter: measured 0.8 to 2 GB/s on one core, and a twelfth to a fiftieth of
-    /// the size, on pictures of ours. Choosing the filter row by row is a sixth slower and gains less than 1 %. The
+    /// Deflate's first level behind the Paeth filter: measured 0.8 to 2 GB/s on one core, and a twelfth to a fiftieth
+    /// of the size, on pictures of ours. Choosing the filter row by row is a sixth slower and gains less than 1 %. The
     /// second level takes twice as long for three quarters of the size. The encoder made for PNG is half as fast again,
     /// but its files are a fifth to a half larger, and where it meets noise, which jitter is, larger than the picture.
     pub(super) fn new(width: u32, height: u32, texts: &[(String, String)]) -> io::Result<Self> {

@@ -162,7 +162,7 @@ fn read_ppm(from: &mut impl BufRead, length: Option<u64>) -> Result<Picture, Wro
             return Err(problem(rest));
         }
     }
-    // One byte more than there may be, to see that there is none.
+    // One byte more than expected is asked for, to see that the file has no more.
     let rgb = read_up_to(&mut from, expected + 1)?;
     let rest = rgb.len() as u64;
     if rest == expected {

@@ -104,7 +104,8 @@ impl Sink {
         }
     }
 
-    /// The file itself, empty, for an encoder that must go back and forth in it; none where only writing on is possible.
+    /// The file itself, empty, for an encoder that must go back and forth in it; none where only writing on is
+    /// possible.
     pub(super) fn seekable(&mut self) -> Option<&mut File> {
         match self.ending {
             Ending::Through => None,
@@ -125,13 +126,14 @@ impl Sink {
             .map_err(io::IntoInnerError::into_error)?;
         match self.ending {
             Ending::Through => Ok(()),
-            // Closed before it is renamed: some network file systems keep the last errors, and the last bytes, for then.
+            // Closed before it is renamed: some network file systems keep the last errors, and the last bytes, for
+            // then.
             Ending::Rename(unfinished, end) => {
                 drop(file);
                 unfinished.rename(&end)
             }
             Ending::Copy(unfinished, mut old) => {
-                // Held, so that Ctrl-C waits until the copy is whole.
+                // The lock is held until the copy is whole, so that Ctrl-C waits for it.
                 let registry = registry();
                 let copied = copy_into(&mut file, &mut old);
                 drop(registry);
@@ -213,7 +215,7 @@ fn copy_into(new: &mut File, old: &mut File) -> io::Result<()> {
     let copied =
         copy_range(new, old, 0, new_length.min(old_length)).and_then(|()| old.set_len(new_length));
     if copied.is_err() {
-        // Half old, half new: better nothing than a picture that is neither.
+        // The file is half old and half new now; it is emptied, since no picture is better than one that is neither.
         let _ = old.set_len(0);
     }
     copied
@@ -304,7 +306,7 @@ pub fn remove_unfinished() {
     let mut registry = lock();
     registry.ending = true;
     for path in registry.unfinished.drain(..) {
-        // Gone already, or not to be removed: there is nobody left to tell.
+        // A file that cannot be removed, or is gone already, is passed over: there is nobody left to tell.
         let _ = fs::remove_file(path);
     }
 }

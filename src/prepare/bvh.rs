@@ -1,7 +1,7 @@
 //! A bounding volume hierarchy over many spheres, for rays from anywhere. For both tracers.
 //!
-//! `obvhs` builds the tree from f32 boxes. A box is padded outward before that, by more than a slab test in f32 can err,
-//! so that the tree only ever says "may be hit": which sphere is hit, and where, is decided by the spheres alone.
+//! `obvhs` builds the tree from f32 boxes. A box is padded outward before that, by more than a slab test in f32 can
+//! err, so that the tree only ever says "may be hit": which sphere is hit, and where, is decided by the spheres alone.
 
 use std::time::Duration;
 
@@ -49,8 +49,8 @@ pub struct Node {
 /// From this many spheres on a tree is quicker than asking every one (docs/BENCH.md).
 pub const WORTHWHILE: usize = 48;
 
-/// A box is widened by this share of its corners' coordinates: what its own rounding to f32 and a hit point's may be off.
-/// The slab test's roundings are relative to the distance, and covered by the slack of the test.
+/// A box is widened by this share of its corners' coordinates: what its own rounding to f32 and a hit point's may be
+/// off. The slab test's roundings are relative to the distance, and covered by the slack of the test.
 const PAD: f64 = 1.0 / 524_288.0;
 
 /// Coordinates beyond this would overflow an f32 when areas are compared; such spheres stay outside the tree.
@@ -81,8 +81,8 @@ fn padded<R: Real>(sphere: &WorldSphere<R>) -> Option<Boxed> {
         .then(|| Boxed(Aabb::new(corner(-1.0), corner(1.0))))
 }
 
-/// Builds the tree over the spheres that f32 can hold and puts those first, in the tree's order; the others follow in their
-/// own. None, and nothing moved, if they are too few.
+/// Builds the tree over the spheres that f32 can hold and puts those first, in the tree's order; the others follow in
+/// their own. None, and nothing moved, if they are too few.
 pub fn build<R: Real>(spheres: &mut Vec<WorldSphere<R>>) -> Option<Bvh> {
     let boxes: Vec<Option<Boxed>> = spheres.iter().map(padded).collect();
     let inside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_some()).collect();
@@ -138,8 +138,8 @@ fn depth(nodes: &[Node]) -> usize {
 
 impl Node {
     /// Where the ray from a base along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
-    /// components, and the base lies between `high` and `low`: the box is widened by their difference. The slack covers the
-    /// roundings of the test itself, which are relative.
+    /// components, and the base lies between `high` and `low`: the box is widened by their difference. The slack covers
+    /// the roundings of the test itself, which are relative.
     pub fn enters(&self, low: [f64; 3], high: [f64; 3], inverse: [f64; 3]) -> Option<f64> {
         let mut near = 0.0_f64;
         let mut far = f64::INFINITY;

@@ -93,7 +93,7 @@ pub fn over_pixels(camera: &scene::Camera, form: &[Ratio; 3]) -> [Ratio; 3] {
 
 /// The exponent of the power of two next below `z` > 0.
 pub fn exponent(z: f64) -> i32 {
-    // Within what `two_to` can invert.
+    // The exponent stays in the range in which `two_to` has an inverse.
     if z.is_normal() {
         (((z.to_bits() >> 52) & 0x7ff) as i32 - 1023).min(1022)
     } else {

@@ -2,8 +2,8 @@
 
 use crate::scene::{Extent, Object, Scene, Shape};
 
-/// For each object whether an object that comes before covers all of it, or all of it is before the screen. `groups` has
-/// the numbers of their surfaces.
+/// For each object whether an object that comes before covers all of it, or all of it is before the screen. `groups`
+/// has the numbers of their surfaces.
 pub fn hidden(scene: &Scene, groups: &[u32], screen_tolerance: f64) -> Vec<bool> {
     let mut covered = vec![false; groups.iter().map(|g| *g as usize + 1).max().unwrap_or(0)];
     let of = |(object, group): (&Object, &u32)| {

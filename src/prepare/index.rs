@@ -1,8 +1,9 @@
 //! Indices of tiles, blocks and texels as primary rays see them, exactly: quotients of linear forms over the pixel.
 //!
-//! On most planes of most scenes such an index depends on the pixel's column alone, or on its row alone: the z of a floor,
-//! x and y of a wall that faces the viewer, x and z of a wall that stands upright. There floor(index) is an exact fact of
-//! the column or row, and no pixel need be in doubt about it, tied or not. `shader::pack` makes tables of these facts.
+//! On most planes of most scenes such an index depends on the pixel's column alone, or on its row alone: the z of a
+//! floor, x and y of a wall that faces the viewer, x and z of a wall that stands upright. There floor(index) is an
+//! exact fact of the column or row, and no pixel need be in doubt about it, tied or not. `shader::pack` makes tables of
+//! these facts.
 
 use dashu_int::IBig;
 use glam::DVec3;
@@ -14,8 +15,8 @@ use crate::real::rational::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3
 use crate::real::{Bounded, Real};
 use crate::scene::{self, Extent, Object, Scene, Shape, TextureMode};
 
-/// An index before its floor is taken: top·(x, y, 1) / bottom·(x, y, 1) at the pixel (x, y), where the plane is met if the
-/// divisor is > 0.
+/// An index before its floor is taken: top·(x, y, 1) / bottom·(x, y, 1) at the pixel (x, y), where the plane is met if
+/// the divisor is > 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Index {
     top: [Ratio; 3],
@@ -144,16 +145,16 @@ impl ViewedPlane<'_> {
 }
 
 impl Index {
-    /// floor(index) for each column (`axis` 0) or row (1) of `pixels`, where that is the same for all its pixels that meet
-    /// the plane; None where it is not, or none of them does. Nothing at all if that is so everywhere.
+    /// floor(index) for each column (`axis` 0) or row (1) of `pixels`, where that is the same for all its pixels that
+    /// meet the plane; None where it is not, or none of them does. Nothing at all if that is so everywhere.
     pub fn floors(&self, axis: usize, pixels: u32) -> Vec<Option<IBig>> {
         let other = 1 - axis;
         let (top, bottom) = (&self.top[other], &self.bottom[other]);
         if is_zero(top) && is_zero(bottom) {
             return self.line(axis, pixels);
         }
-        // The lines on which an index is constant meet in one point. The one of them that runs along a column: there the
-        // forms' slopes have the quotient that the forms themselves have.
+        // The lines on which an index is constant meet in one point, and one of them runs along a column (or row). On
+        // it the quotient of the forms is the quotient of their slopes.
         if is_zero(bottom) {
             return Vec::new();
         }
@@ -291,7 +292,8 @@ mod tests {
         })
     }
 
-    /// Compares all that is known of a scene's indices with each pixel's own; returns how many columns and rows are known.
+    /// Compares all that is known of a scene's indices with each pixel's own; returns how many columns and rows are
+    /// known.
     fn known(path: &str, pixeldim: [u32; 2]) -> usize {
         let mut scene = load(path.as_ref()).unwrap();
         scene.camera.pixeldim = pixeldim;

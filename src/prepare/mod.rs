@@ -4,8 +4,8 @@
 //! type, `shader::pack` rounds a `Prepared<Bounded>` to f32. Two rules make f32 enough for nearly every pixel
 //! (docs/NUMERICS.md):
 //!
-//! - **The viewpoint is the origin, and lengths are in units of 2^scale**, the power of two next below the viewpoint's z.
-//!   Every ray starts at the origin; differences from the viewpoint are taken here, where there are bits to lose.
+//! - **The viewpoint is the origin, and lengths are in units of 2^scale**, the power of two next below the viewpoint's
+//!   z. Every ray starts at the origin; differences from the viewpoint are taken here, where there are bits to lose.
 //! - **What is linear in the pixel stays linear**: the inverse 1/s of the ray parameter of a plane, the offset from a
 //!   sphere's projected center, the z > τ rule. No 10000 and no 1000 of the tile rules ever meets an f32.
 

@@ -1,7 +1,7 @@
 //! Spheres that are made ready one by one, when a ray comes near them: for number types whose numbers take memory.
 //!
-//! The spheres' tree and screen grid, and all that is no number, is shared with a scene prepared before in another type. The
-//! floor below `world` and `prepared`, which hold a [`OnDemandSpheres`] in place of their spheres.
+//! The spheres' tree and screen grid, and all that is no number, is shared with a scene prepared before in another
+//! type. The floor below `world` and `prepared`, which hold a [`OnDemandSpheres`] in place of their spheres.
 
 use std::collections::HashMap;
 use std::sync::Arc;

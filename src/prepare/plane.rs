@@ -217,7 +217,7 @@ impl Front {
         );
         let x0 = origin(width, camera.worlddim.x) - ratio(camera.viewpoint.x);
         let y0 = origin(height, camera.worlddim.y) - ratio(camera.viewpoint.y);
-        // 1/s over pixels.
+        // The coefficients of 1/s as a form over pixels.
         let per_x = a * &dx;
         let per_y = b * &dy;
         let constant = a * x0 + b * y0 + c;

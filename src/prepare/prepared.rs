@@ -24,7 +24,8 @@ pub struct Prepared<R> {
     pub camera: Camera<R>,
     /// The planes that a primary ray can hit, in file order.
     pub planes: Vec<Plane<R>>,
-    /// The spheres that a primary ray can hit, in file order; where they are in the screen's cells, those that are seen.
+    /// The spheres that a primary ray can hit, in file order; where they are in the screen's cells, those that are
+    /// seen.
     pub spheres: Vec<Sphere<R>>,
     /// Where on the screen they are, if there are many.
     pub screen_grid: Option<Arc<ScreenGrid>>,
@@ -38,7 +39,8 @@ pub struct Prepared<R> {
     pub is_plane: Arc<Vec<bool>>,
     /// One for each object of the scene: the number of the surface that it is or is part of.
     pub groups: Arc<Vec<u32>>,
-    /// One for each object of the scene: whether it is never hit. `planes` and `spheres` lack those, here and in `world`.
+    /// One for each object of the scene: whether it is never hit. `planes` and `spheres` lack those, here and in
+    /// `world`.
     pub hidden: Arc<Vec<bool>>,
     /// Whether some object lets light through.
     pub any_transparent: bool,
@@ -87,8 +89,8 @@ impl<R: Real> Prepared<R> {
         prepared
     }
 
-    /// Prepares a scene that has been prepared before in another number type, and shares with that what is no number. Where
-    /// `sources` has spheres, they are made when they are asked for.
+    /// Prepares a scene that has been prepared before in another number type, and shares with that what is no number.
+    /// Where `sources` has spheres, they are made when they are asked for.
     pub fn again<S: Real>(
         scene: &Scene,
         view: ViewParameters,

@@ -1,8 +1,8 @@
 //! Which of many spheres a primary ray may hit, by the cell of the screen that it passes through. For both tracers.
 //!
-//! A sphere stands in the list of every cell that its outline's box touches. The lists run from the nearest sphere on, so
-//! that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64 and are padded by
-//! far more than that errs: they only ever say "may be hit".
+//! A sphere stands in the list of every cell that its outline's box touches. The lists run from the nearest sphere on,
+//! so that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64 and are
+//! padded by far more than that errs: they only ever say "may be hit".
 
 use std::collections::HashSet;
 
@@ -19,8 +19,8 @@ use crate::settings::ViewParameters;
 /// From so many objects on a ray does not ask every sphere. (Fewer stand in the text of the GPU's shader.)
 pub const WORTHWHILE: usize = 33;
 
-/// Columns and rows of a cell, unless there would be too many cells: a driver that is a CPU runs 8 pixels of a row as one
-/// vector, and they should share a list.
+/// Columns and rows of a cell, unless there would be too many cells: a driver that is a CPU runs 8 pixels of a row as
+/// one vector, and they should share a list.
 const SIDES: [u32; 2] = [8, 4];
 
 /// Most cells.
@@ -29,11 +29,11 @@ const MOST_CELLS: u64 = 1 << 20;
 /// Most entries of all lists, beside eight for each sphere.
 const ENTRIES: u64 = 1 << 20;
 
-/// Spheres are seen from outside by a ray that is not parallel to the screen if their depth is more than their radius by
-/// this share; the others are seen anywhere.
+/// Spheres are seen from outside by a ray that is not parallel to the screen if their depth is more than their radius
+/// by this share; the others are seen anywhere.
 const CLEARANCE: f64 = 1.0 + 1e-5;
 
-/// What an outline's end may be off by, relatively; and in pixels.
+/// How far the end of an outline may be off: relatively, and in pixels.
 const PAD: f64 = 1e-9;
 const PAD_PIXELS: f64 = 1e-3;
 
@@ -56,8 +56,8 @@ pub struct ScreenGrid {
 type Covered = [[u32; 2]; 2];
 
 impl ScreenGrid {
-    /// The places of the spheres that a ray through this point of the screen may hit, in pixels from the bottom left. The
-    /// nearest come first.
+    /// The places of the spheres that a ray through this point of the screen may hit, in pixels from the bottom left.
+    /// The nearest come first.
     pub fn at(&self, pixel: [f64; 2]) -> &[u32] {
         let [column, row] = [0, 1].map(|i| {
             let pixel = pixel[i].round().max(0.0) as u32;
@@ -166,7 +166,8 @@ fn few_enough(pixels: [u32; 2], sides: [u32; 2], covered: &[Covered]) -> bool {
     count[0] * count[1] <= MOST_CELLS && total <= ENTRIES + 8 * covered.len() as u64
 }
 
-/// The places of the spheres, nearest first. Of equal spheres only the first in the file is there: it is the one that counts.
+/// The places of the spheres, nearest first. Of equal spheres only the first in the file is there: it is the one that
+/// counts.
 fn nearest_first(max_inverse: &[f32], ball: impl Fn(usize) -> (DVec3, f64)) -> Vec<u32> {
     // Positive floats are ordered as their bits.
     let key = |(place, max_inverse): (usize, &f32)| {
@@ -224,7 +225,7 @@ impl Outlines {
         let r = radius * self.unit;
         let (depth, d) = (-c.z, self.distance);
         let everywhere = self.pixels.map(|n| [0, n - 1]);
-        // A NaN is no more than anything; and squares of such numbers stay in range.
+        // A NaN fails these comparisons. The squares of depths between these limits stay in range.
         let outside = depth > r * CLEARANCE && depth > 1e-100 && depth < 1e100;
         if !outside {
             return Some((f32::MAX, everywhere));
@@ -232,8 +233,8 @@ impl Outlines {
         // H.z = −d·s is at most that of the sphere's nearest point.
         let nearest = (d / (depth - r) * (1.0 + 1e-6)).min(f64::from(f32::MAX) * 0.9);
         let max_inverse = (nearest as f32).next_up();
-        // The planes through the viewpoint and a column's or row's rays touch the sphere at W_i = d·(c·z ± r·√(c² + z² − r²))/
-        // (z² − r²), z the depth: docs/NUMERICS.md.
+        // The planes through the viewpoint and a column's or row's rays touch the sphere at W_i = d·(c·z ± r·√(c² + z²
+        // − r²))/ (z² − r²), z the depth: docs/NUMERICS.md.
         let square = (depth - r) * (depth + r);
         let mut covered = everywhere;
         for (i, covered) in covered.iter_mut().enumerate() {

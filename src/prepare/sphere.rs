@@ -63,7 +63,7 @@ impl<R: Real> Sphere<R> {
         let c2 = c.dot(c);
         let mut power = c2 - r * r;
         // Near the surface the difference of squares has lost its bits, its sign first: there it is taken exactly.
-        // Likewise where squares are out of f64's range, and nothing is larger than anything.
+        // It is taken exactly, too, where squares leave f64's range and comparisons with NaN fail.
         let (near, far) = (power.to_f64(), c2.to_f64());
         if !(near.abs() > 1e-6 * far && near.is_finite() && far.is_finite()) {
             let exact = power_of_viewpoint(viewpoint, center, radius);

@@ -60,7 +60,8 @@ pub struct Pplane<R> {
     pub from_point: [FromPoint<R>; 2],
 }
 
-/// floor((H + shift)/d) for one coordinate of a hit point: `floor(P·per_unit + fraction) + parity`, up to an even number.
+/// floor((H + shift)/d) for one coordinate of a hit point: `floor(P·per_unit + fraction) + parity`, up to an even
+/// number.
 ///
 /// The whole part of (V + shift)/d is folded into `parity` here, exactly; what is left is small.
 #[derive(Debug, Clone, Copy)]

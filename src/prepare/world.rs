@@ -1,7 +1,7 @@
 //! The scene as rays from anywhere see it: shadow rays, mirror rays, rays that go through.
 //!
-//! Positions are from the viewpoint, in units of 2^scale, as everywhere after `prepare`. What holds for whole surfaces is
-//! decided here, exactly: which of them coincide, and which lights lie on them.
+//! Positions are from the viewpoint, in units of 2^scale, as everywhere after `prepare`. What holds for whole surfaces
+//! is decided here, exactly: which of them coincide, and which lights lie on them.
 
 use std::sync::Arc;
 

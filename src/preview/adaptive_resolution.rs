@@ -33,8 +33,8 @@ impl AdaptiveResolution {
         }
     }
 
-    /// How long a first picture, as large as it is, may take before it is given up for a smaller one: none if that is known
-    /// to be quick.
+    /// How long a first picture, as large as it is, may take before it is given up for a smaller one: none if that is
+    /// known to be quick.
     pub(super) fn patience(&self) -> Option<f64> {
         self.whole.is_none().then_some(QUICK)
     }
@@ -45,7 +45,8 @@ impl AdaptiveResolution {
         if smaller == 1 {
             self.whole = Some(seconds);
         } else if let Some(whole) = &mut self.whole {
-            // Half of what was thought, half of what this says: one picture says little on a machine that does other things.
+            // The estimate moves half of the way to this measurement: one picture says little on a machine that does
+            // other things.
             let fixed = self.least.unwrap_or(0.0).min(AIM / 2.0);
             let says = fixed + (seconds - fixed) * f64::from(smaller * smaller);
             *whole = 0.5 * (*whole + says);

@@ -1,7 +1,7 @@
 //! The window: brings together the file, the pictures, the panels, and what the user does.
 //!
-//! Here are its parts, and a frame; `doing` has what keys, mouse and panels ask for, `asking` what is wanted to be known of
-//! the picture.
+//! Here are its parts, and a frame; `doing` has what keys, mouse and panels ask for, `asking` what is wanted to be
+//! known of the picture.
 
 mod asking;
 mod doing;
@@ -87,7 +87,8 @@ pub(super) struct App {
     area: Option<Rect>,
     help_open: bool,
     save_as: Option<SaveAs>,
-    /// Whether the window is to be closed, and asks what becomes of changes; once they are saved, in which case it does not ask.
+    /// Whether the window is to be closed, and asks what becomes of changes; once they are saved, in which case it does
+    /// not ask.
     leaving: Option<bool>,
     /// What is being saved or read beside the window.
     threads: Vec<JoinHandle<()>>,
@@ -273,7 +274,7 @@ impl App {
             said: said.map(|(text, _)| text.clone()),
         };
         if line.share.is_some() || frames.is_some() || said.is_some() {
-            // So that it does not stand still.
+            // The line is drawn again soon, so that its figures do not stand still.
             ui.ctx().request_repaint_after(Duration::from_millis(100));
         }
         if status::show(ui, picture, &line) {

@@ -100,7 +100,8 @@ impl Drop for Inspector {
     }
 }
 
-/// Answers questions about one scene, the first of which was taken; returns the first about another one, if there is one.
+/// Answers questions about one scene, the first of which was taken; returns the first about another one, if there is
+/// one.
 fn about(
     gpu: &Gpu,
     settings: &Settings,
@@ -157,8 +158,8 @@ fn explain(probe: &Probe<'_>, name: &str, pixel: [u32; 2], options: probe::Optio
     text
 }
 
-/// What each pixel of the scene's picture shows, as f64 has it: numbers of objects from 1, 0 is nothing; rows from the top.
-/// None if it is to be given up.
+/// What each pixel of the scene's picture shows, as f64 has it: numbers of objects from 1, 0 is nothing; rows from the
+/// top. None if it is to be given up.
 fn objects(scene: &Scene, settings: &Settings, stop: impl Fn() -> bool + Sync) -> Option<Vec<u32>> {
     let prepared = Prepared::<f64>::new(scene, settings.view());
     let [width, height] = scene.camera.pixeldim;

@@ -14,8 +14,8 @@ pub(super) struct Panel {
     pub(super) explained: Option<(u64, [u32; 2], String)>,
 }
 
-/// Shows the panel. `wanted` is the pixel it is about, and what decided it, as the picture has it. Whether a pixel that is
-/// held is to be let go.
+/// Shows the panel. `wanted` is the pixel it is about, and what decided it, as the picture has it. Whether a pixel that
+/// is held is to be let go.
 pub(super) fn show(
     ui: &mut Ui,
     panel: &Panel,
@@ -85,7 +85,7 @@ mod tests {
         harness
     }
 
-    // With all that `plumb probe` prints, some of which few fonts have.
+    // This text has every character that `plumb probe` prints; few fonts have all of them.
     const TEXT: &str = "weight ∘ (ambient + diffuse) · 1 ± 2 × 3 … 640×480 ≤ ≥ √ — − ÷ ²";
 
     #[test]
@@ -99,7 +99,7 @@ mod tests {
         harness.get_by_label("pixel (3, 4)");
         harness.get_by_label("decided by the GPU, which is sure");
         harness.get_by_label(TEXT);
-        // What was explained is of another pixel.
+        // The explanation at hand belongs to another pixel.
         harness.state_mut().over = Some([5, 4]);
         harness.run();
         harness.get_by_label("pixel (5, 4)");

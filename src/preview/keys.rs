@@ -153,7 +153,7 @@ pub(super) fn pressed(context: &Context) -> Vec<Command> {
     }
     context.input(|input| {
         let asked = |event: &Event| match event {
-            // Each with the modifiers of its moment: between two frames there may be several.
+            // Each key event carries the modifiers of its own moment, as several events may come between two frames.
             Event::Key {
                 key,
                 pressed: true,
@@ -267,7 +267,7 @@ mod tests {
             let name = match binding.key {
                 Key::ArrowLeft | Key::ArrowRight | Key::ArrowUp | Key::ArrowDown => "arrows",
                 Key::PageUp | Key::PageDown => continue,
-                // Others for the same.
+                // These keys are alternatives to keys that are listed.
                 Key::Equals | Key::Questionmark | Key::W => continue,
                 Key::Plus => "+",
                 Key::Minus => "−",

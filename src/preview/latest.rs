@@ -1,4 +1,5 @@
-//! A letter box that holds one letter: whoever works on wishes gets the newest, and is told when what it works on is old.
+//! A letter box that holds one letter: whoever works on wishes gets the newest, and is told when what it works on is
+//! old.
 //!
 //! Between the window's thread, which never waits, and those that render and explain.
 

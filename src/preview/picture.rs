@@ -116,8 +116,9 @@ pub(super) fn area(rect: Rect, scale: f64) -> Area {
     Area { corner, size }
 }
 
-/// How far the mouse was dragged since this was last asked, in points, and by which button. All of the way counts: what goes by
-/// before egui takes it for a drag, and what comes together with the release; so what was grabbed stays under the cursor.
+/// How far the mouse was dragged since this was last asked, in points, and by which button. All of the way counts: what
+/// goes by before egui takes it for a drag, and what comes together with the release; so what was grabbed stays under
+/// the cursor.
 fn dragged(
     ui: &Ui,
     response: &egui::Response,

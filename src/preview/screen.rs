@@ -1,7 +1,7 @@
 //! Draws a picture that is on the GPU into the window, byte by byte, without bringing it to the host.
 //!
-//! A callback of egui's: the worker's [`Canvas`] goes in as it is, and what decided each pixel or which object it shows is
-//! painted over it.
+//! A callback of egui's: the worker's [`Canvas`] goes in as it is, and what decided each pixel or which object it shows
+//! is painted over it.
 
 use std::sync::Arc;
 

@@ -106,7 +106,7 @@ pub(super) fn shows(scene: &Scene, object: usize, entity: EntityId) -> bool {
             Surface::Textured { texture, .. } => *texture == i,
             Surface::Plain | Surface::Procedural { .. } | Surface::Tiled { .. } => false,
         },
-        // They are not seen.
+        // Cameras and lights are not seen in the picture.
         EntityId::Camera | EntityId::Light(_) => false,
     }
 }
@@ -304,8 +304,8 @@ pub(super) struct Saving {
 }
 
 impl Saving {
-    /// Writes the changes into the file, touching nothing else in it. A file that was changed meanwhile is not touched. What
-    /// the file is now, and what was done, in a sentence.
+    /// Writes the changes into the file, touching nothing else in it. A file that was changed meanwhile is not touched.
+    /// What the file is now, and what was done, in a sentence.
     ///
     /// # Errors
     /// Why not, in a sentence; then the file is as it was.

@@ -1,5 +1,5 @@
-//! The session and what was wished for of it, shared by the window and by who reads the file: a file that was written is
-//! rendered at once, and does not wait for the window's next frame.
+//! The session and what was wished for of it, shared by the window and by who reads the file: a file that was written
+//! is rendered at once, and does not wait for the window's next frame.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;

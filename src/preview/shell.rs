@@ -24,8 +24,8 @@ pub(super) struct Shell<'a> {
 const SETTLES: Duration = Duration::from_secs(1);
 
 impl Shell<'_> {
-    /// Lets the others go on: not only if an event told that the size changes, since a surface that turns out to be outdated
-    /// while it is drawn keeps them away too.
+    /// Lets the others go on: not only if an event told that the size changes, since a surface that turns out to be
+    /// outdated while it is drawn keeps them away too.
     fn done(&self) {
         self.gpu.submit_gate.open();
     }

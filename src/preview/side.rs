@@ -55,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wante
     side.selected = side
         .selected
         .filter(|entity| title(scene, *entity).is_some());
-    // Below, so that the lists stay where they are when something is clicked.
+    // The panel opens below the lists, so that they stay where they are when something is clicked.
     if let Some(entity) = side.selected {
         egui::Panel::bottom("selected")
             .resizable(true)
@@ -266,7 +266,8 @@ fn sliders<const N: usize>(
         return;
     };
     let mut numbers = value.numbers().to_vec();
-    // As far as twice what the file has, so that the handle does not flee.
+    // The slider goes up to twice the file's value, whatever the value is now, so that its range does not move while it
+    // is dragged.
     let file = session.good().and_then(|good| target.value_in(&good.scene));
     let largest = file.map_or(0.0, |file| {
         file.numbers().iter().copied().fold(0.0, f64::max)

@@ -1,6 +1,7 @@
 //! Numbers as a person would write them.
 
-/// `number` rounded to a power of ten that is about a ten-thousandth of `size`, or less: 1.1 and not 1.1000000000000001.
+/// `number` rounded to a power of ten that is about a ten-thousandth of `size`, or less: 1.1 and not
+/// 1.1000000000000001.
 pub(super) fn neat(number: f64, size: f64) -> f64 {
     let digits = (4.0 - size.abs().log10()).ceil();
     if !digits.is_finite() {

@@ -1,4 +1,5 @@
-//! Where the picture is in the window, which pixel is under the cursor, and how the viewpoint moves. No window is needed.
+//! Where the picture is in the window, which pixel is under the cursor, and how the viewpoint moves. No window is
+//! needed.
 
 use glam::DVec3;
 

@@ -5,8 +5,9 @@
 //!         every half second, a look ────┴─► read ─► settle: is it quiet? ─► News
 //! ```
 //!
-//! Editors save in many ways: over the file, beside it and then renamed over it, after deleting it, twice. So nothing is
-//! made of the kind of an event: it is only a sign to look. What is found counts once it stays, which [`settle`] decides.
+//! Editors save in many ways: over the file, beside it and then renamed over it, after deleting it, twice. So nothing
+//! is made of the kind of an event: it is only a sign to look. What is found counts once it stays, which [`settle`]
+//! decides.
 
 mod listen;
 mod settle;
@@ -26,14 +27,15 @@ use crate::scene::{LoadError, read_file};
 use listen::Ears;
 use settle::Settle;
 
-/// Between looks without a sign: some file systems (those of a network) send none, and a folder may be replaced as a whole.
+/// Between looks without a sign: some file systems (those of a network) send none, and a folder may be replaced as a
+/// whole.
 const LOOK: Duration = Duration::from_millis(500);
 
 /// The same while the system sends no signs at all.
 const LOOK_DEAF: Duration = Duration::from_millis(100);
 
-/// How long after a change the file is read at every look, even if it seems untouched: the time of its last change is told
-/// in steps of up to 2 s (FAT), and a second change may fall into the same one.
+/// How long after a change the file is read at every look, even if it seems untouched: the time of its last change is
+/// told in steps of up to 2 s (FAT), and a second change may fall into the same one.
 const FRESH: Duration = Duration::from_secs(3);
 
 /// The least time between two looks, however many signs there are.
@@ -71,7 +73,8 @@ impl Watcher {
     /// is; then with each change. The same news never comes twice in a row: what is told is always other than what was
     /// told before it, so after [`News::Gone`] the same text is news again.
     ///
-    /// Nothing has to be there yet; neither the file nor its folder. `path` is looked up anew each time: links may change.
+    /// Nothing has to be there yet; neither the file nor its folder. `path` is looked up anew each time: links may
+    /// change.
     ///
     /// # Errors
     /// When there can be no thread.
@@ -89,7 +92,7 @@ impl Watcher {
         tell: impl FnMut(News) + Send + 'static,
     ) -> io::Result<Watcher> {
         let stopped = Arc::new(AtomicBool::new(false));
-        // Room for one sign: that there is one says all.
+        // The channel has room for one sign, since one says all that many would.
         let (wake, signs) = mpsc::sync_channel(1);
         let watch = Watch {
             path: path.to_owned(),
@@ -220,7 +223,7 @@ fn read(path: &Path) -> News {
             path.display()
         ));
     }
-    // Asked first, as the loader would search for the file that was meant.
+    // Absence is asked for first, since the loader would search for similar names.
     if fs::metadata(path).is_err_and(|error| is_absence(&error)) {
         return News::Gone;
     }

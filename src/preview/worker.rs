@@ -1,7 +1,8 @@
 //! The thread that renders what the window wants to show: at once and small if need be, then whole, then certified.
 //!
-//! Between the window, which leaves [`Wish`]es, and `render`, which makes the pictures. The newest wish wins: what is under way
-//! for an older one is given up, but for the first picture of each, without which a steady drag would show nothing.
+//! Between the window, which leaves [`Wish`]es, and `render`, which makes the pictures. The newest wish wins: what is
+//! under way for an older one is given up, but for the first picture of each, without which a steady drag would show
+//! nothing.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -306,7 +307,7 @@ impl Work {
                 (Err(render::Error::Stopped), _) => {
                     Err(Unmade::GivenUp(verdicts.len() as f64 / pixels as f64))
                 }
-                // Rows that were handed on are wrong: all of it again, by the CPU.
+                // Rows that were handed on are wrong, so the CPU renders the whole picture again.
                 (Err(render::Error::Revoked(_)), _) if settings.backend == Backend::Auto => {
                     settings.backend = Backend::Cpu;
                     continue;
@@ -319,7 +320,7 @@ impl Work {
 
     /// A canvas that nobody shows.
     fn canvas(&mut self, size: [u32; 2]) -> Result<Arc<Canvas>, GpuError> {
-        // Those of another size are of no use soon; those that are shown live as long as they are.
+        // Canvases of another size are dropped, as they will not be used soon; those on the screen are kept.
         self.canvases
             .retain(|canvas| canvas.size == size || Arc::strong_count(canvas) > 1);
         let mut free = self.canvases.iter().filter(|canvas| canvas.size == size);

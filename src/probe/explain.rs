@@ -85,7 +85,7 @@ impl Pixel<'_, '_> {
                 triple(components(color).map(|c| 255.0 * c)),
             )?;
         }
-        // As rendering has them, whatever it does to be sure of them.
+        // The bytes come from the same tracer as in rendering, with all that it takes to be sure of them.
         let decided = match probe.exact_tracer.trace(&probe.limits, sampling, x, y) {
             Ok(decided) => decided,
             Err(_) => return Ok(Err(Fault::TooManyRays)),

@@ -9,7 +9,8 @@ use crate::frame::{Decided, PixelFault};
 use crate::gpu::single::Single;
 use crate::real::{Bounded, Undecided};
 
-/// What there is to know of a pixel, in short. Colours are red, green, blue; 1 is full brightness where nothing else is said.
+/// What there is to know of a pixel, in short. Colours are red, green, blue; 1 is full brightness where nothing else is
+/// said.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facts {
     /// Column from the left, row from the bottom.
@@ -24,17 +25,19 @@ pub struct Facts {
     pub hit: Result<Option<FirstHit>, Undecided>,
     /// The value before quantising, the certified bytes and what decided them; or that a sample needs too many rays.
     pub decided: Result<Decided, PixelFault>,
-    /// The value in f64, and how far off that may be: what the CPU tries first. None where it leaves open what the rays meet.
+    /// The value in f64, and how far off that may be: what the CPU tries first. None where it leaves open what the rays
+    /// meet.
     pub enclosure: Option<[Bounded; 3]>,
     /// Whether the GPU is sure of the bytes, if it was asked.
     pub verdict: Option<GpuVerdict>,
-    /// 255 times the value in the GPU's f32, and how far off that may be, if it was asked, and has a value: it has none of
-    /// several samples.
+    /// 255 times the value in the GPU's f32, and how far off that may be, if it was asked, and has a value: it has none
+    /// of several samples.
     pub single: Option<Single>,
 }
 
 impl Probe<'_> {
-    /// The outcome of pixel (x, y), counted from the bottom left. Where a sample needs too many rays, the GPU is not asked.
+    /// The outcome of pixel (x, y), counted from the bottom left. Where a sample needs too many rays, the GPU is not
+    /// asked.
     ///
     /// # Errors
     /// [`Unexplained::NoSuchPixel`].

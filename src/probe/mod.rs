@@ -1,10 +1,10 @@
-//! A pixel explained, from its rays to its bytes, by the reference tracer in f64: for `plumb probe` and for the inspector
-//! of the preview.
+//! A pixel explained, from its rays to its bytes, by the reference tracer in f64: for `plumb probe` and for the
+//! inspector of the preview.
 //!
 //! Stands beside the flow: it renders nothing, and takes what it tells from the tracers. A [`Probe`] is made once for a
-//! scene and asked for many pixels: [`Probe::write`] explains one at length (`primary_ray` the ray from the viewpoint and what
-//! every object answered, with `why` in exact arithmetic; `tree` the rays and lights; `verdict` what the GPU says),
-//! [`Probe::facts`] tells the outcome alone.
+//! scene and asked for many pixels: [`Probe::write`] explains one at length (`primary_ray` the ray from the viewpoint
+//! and what every object answered, with `why` in exact arithmetic; `tree` the rays and lights; `verdict` what the GPU
+//! says), [`Probe::facts`] tells the outcome alone.
 //!
 //! A probe borrows its scene. A thread that answers for many scenes holds each in an `Arc` of its own, and has a probe
 //! beside it for as long as questions are about that scene.
@@ -54,8 +54,8 @@ pub enum AskGpu {
     /// Nothing.
     #[default]
     Nothing,
-    /// What it has before it quantises, and how far off that may be: one invocation, of a shader that is compiled when the
-    /// first pixel is asked for.
+    /// What it has before it quantises, and how far off that may be: one invocation, of a shader that is compiled when
+    /// the first pixel is asked for.
     Value,
     /// That, and whether it is sure of the bytes: for this the whole row is rendered, with a shader compiled for it.
     ValueAndVerdict,
@@ -90,8 +90,8 @@ pub type Ended = io::Result<Result<(), Unexplained>>;
 
 /// A scene made ready for questions about its pixels.
 ///
-/// Scenes are prepared when it is made, and in plain f64, as people read numbers, for the first pixel that is explained at
-/// length. It goes to another thread, but is not asked by two at a time.
+/// Scenes are prepared when it is made, and in plain f64, as people read numbers, for the first pixel that is explained
+/// at length. It goes to another thread, but is not asked by two at a time.
 #[derive(Debug)]
 pub struct Probe<'a> {
     scene: &'a Scene,
@@ -111,8 +111,8 @@ struct Rows {
 }
 
 impl<'a> Probe<'a> {
-    /// For `scene`, rendered as `settings` say, certified; what they say of rows, threads and the tracer does not matter.
-    /// `gpu` is the device that is asked, or why there is none.
+    /// For `scene`, rendered as `settings` say, certified; what they say of rows, threads and the tracer does not
+    /// matter. `gpu` is the device that is asked, or why there is none.
     pub fn new(scene: &'a Scene, settings: &Settings, gpu: Result<&'a Gpu, &'a GpuError>) -> Self {
         Self {
             scene,
@@ -128,7 +128,8 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Explains pixel (x, y), counted from the bottom left, of the scene that is called `name`: as text for people, in lines.
+    /// Explains pixel (x, y), counted from the bottom left, of the scene that is called `name`: as text for people, in
+    /// lines.
     ///
     /// # Errors
     /// When `to` fails; and inside, when not all can be told.
@@ -159,8 +160,8 @@ impl<'a> Probe<'a> {
     fn row(&self, y: u32) -> Option<Vec<[f64; 2]>> {
         let mut rows = self.jitter.borrow_mut();
         if y >= rows.end {
-            // The course's offsets are counted from the bottom row: no farther than asked for at first, then twice as far
-            // each time, so that rows one after the other are not counted again for each.
+            // The course's offsets are counted from the bottom row: no farther than asked for at first, then twice as
+            // far each time, so that rows one after the other are not counted again for each.
             let [width, height] = self.scene.camera.pixeldim;
             rows.end = rows.end.saturating_mul(2).min(height).max(y + 1);
             rows.jitter = self.settings.sampling(width, rows.end);
@@ -180,8 +181,8 @@ impl<'a> Probe<'a> {
         verdict::ask(self.scene, &self.settings, self.gpu, x, y)
     }
 
-    /// What the GPU has before it quantises, and how far off it may be; of a single sample. None where it has no value, or
-    /// cannot be asked.
+    /// What the GPU has before it quantises, and how far off it may be; of a single sample. None where it has no value,
+    /// or cannot be asked.
     fn single(&self, x: u32, y: u32) -> Option<Single> {
         let gpu = self.gpu.ok()?;
         let compiled = self.single.get_or_init(|| {

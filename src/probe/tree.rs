@@ -1,6 +1,7 @@
 //! The rays of a sample as a tree: how `plumb probe` shows where a colour comes from.
 //!
-//! A [`TraceObserver`] that writes as the tracer goes: a tree of any size takes no memory but for the rays above the one at hand.
+//! A [`TraceObserver`] that writes as the tracer goes: a tree of any size takes no memory but for the rays above the
+//! one at hand.
 
 use std::io::{self, Write};
 
@@ -28,7 +29,7 @@ pub(super) struct Tree<'a> {
     max_path: f64,
     all: bool,
     to: &'a mut dyn Write,
-    /// How the writing went: the tracer is not to know.
+    /// Whether writing succeeded; the tracer does not see such errors.
     written: io::Result<()>,
     /// Numbers of the rays from the first to the one at hand, each from the one before.
     ancestors: Vec<u32>,

@@ -8,8 +8,8 @@ use crate::real::{Real, Undecided, V3};
 ///
 /// By 1 + cos 2α = 2·cos²α: no acos, no cos, and never less than 0.
 pub(super) fn color_wheel<R: Real>(x: R, y: R) -> Result<V3<R>, Undecided> {
-    // The larger component becomes 1, so that squares neither overflow nor vanish. Any that is not 0 would do: it is divided
-    // out again, its sign too.
+    // The larger component becomes 1, so that squares neither overflow nor vanish. Any component that is not 0 would
+    // do, since it is divided out again, with its sign.
     let (larger, smaller) = if x.to_f64().abs() >= y.to_f64().abs() {
         (x, y)
     } else {

@@ -1,10 +1,10 @@
-//! The built-in procedural shaders, called by number: of each its name, its WGSL, how bright it can be, and a second version
-//! in Rust over any number type, which decides what the WGSL leaves in doubt.
+//! The built-in procedural shaders, called by number: of each its name, its WGSL, how bright it can be, and a second
+//! version in Rust over any number type, which decides what the WGSL leaves in doubt.
 //!
-//! Stands below the scene's parser, which takes its numbers' limit from here, below the CPU's tracer and below the text of
-//! the shader. The table is made by `build.rs` from the list of `shaders/procedural/`: adding a shader is adding
-//! `shaders/procedural/pplane_3_name.wgsl` and `src/procedural/pplane_3_name.rs`, each with a function `pplane_3_name`; the
-//! latter also with `brightest`. A gap in the numbers or a missing file fails the build.
+//! Stands below the scene's parser, which takes its numbers' limit from here, below the CPU's tracer and below the text
+//! of the shader. The table is made by `build.rs` from the list of `shaders/procedural/`: adding a shader is adding
+//! `shaders/procedural/pplane_3_name.wgsl` and `src/procedural/pplane_3_name.rs`, each with a function `pplane_3_name`;
+//! the latter also with `brightest`. A gap in the numbers or a missing file fails the build.
 
 mod color_wheel;
 #[cfg(test)]
@@ -46,8 +46,8 @@ pub struct Shader {
     pub name: &'static str,
     /// Its WGSL.
     pub wgsl: &'static str,
-    /// The brightest channel that it gives, for a material whose brightest ambient channel is this. What is farther away than
-    /// where that becomes a byte of 0 is black for certain.
+    /// The brightest channel that it gives, for a material whose brightest ambient channel is this. What is farther
+    /// away than where that becomes a byte of 0 is black for certain.
     pub brightest: fn(f64) -> f64,
 }
 

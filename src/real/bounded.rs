@@ -1,10 +1,11 @@
 //! f64 with a running error bound: a [`Real`] that knows when f64 is too coarse.
 //!
-//! The bound is that of floating point to nearest: a result r̂ differs from the exact result on its computed operands by at
-//! most u·|r̂|, u = 2⁻⁵³, and by half the smallest subnormal where it underflows; the operands' own errors are carried along.
-//! The bound is itself computed in f64. All its terms are ≥ 0, so that it is low by a part in 10¹⁵ or so for each of the
-//! operations behind it; wherever it is used it is made larger by a part in 10⁸, which is enough for ten million operations
-//! in a row. Nothing is decided by a NaN or an infinity. docs/NUMERICS.md, section 8, derives each bound.
+//! The bound is that of floating point to nearest: a result r̂ differs from the exact result on its computed operands
+//! by at most u·|r̂|, u = 2⁻⁵³, and by half the smallest subnormal where it underflows; the operands' own errors are
+//! carried along. The bound is itself computed in f64. All its terms are ≥ 0, so that it is low by a part in 10¹⁵ or so
+//! for each of the operations behind it; wherever it is used it is made larger by a part in 10⁸, which is enough for
+//! ten million operations in a row. Nothing is decided by a NaN or an infinity. docs/NUMERICS.md, section 8, derives
+//! each bound.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -24,7 +25,8 @@ pub struct Bounded {
 
 /// Unit roundoff of f64.
 const U: f64 = 1.0 / 9_007_199_254_740_992.0;
-/// What underflow may take: half the smallest subnormal from the result, and from each of up to seven terms of the bound.
+/// What underflow may take: half the smallest subnormal from the result, and from each of up to seven terms of the
+/// bound.
 const TINY: f64 = f64::from_bits(4);
 
 impl Bounded {
@@ -52,8 +54,8 @@ impl Bounded {
         }
     }
 
-    /// The power with an exponent in [0, 1), by a square root for each bit of it, until a root is so near to 1 that three
-    /// terms of the binomial series do for the rest.
+    /// The power with an exponent in [0, 1), by a square root for each bit of it, until a root is so near to 1 that
+    /// three terms of the binomial series do for the rest.
     fn part_power(self, mut exponent: f64) -> Self {
         let one = Self::exact(1.0);
         let mut result = one;
@@ -252,7 +254,8 @@ impl Real for Bounded {
         if self.error == 0.0 {
             return Ok(low);
         }
-        // Both differences are exact, or rounded to no less than they are wide: they are at most 1.
+        // Both differences are exact or rounded by a part in 2⁵³, and the margin is larger than the error by a part in
+        // 10⁸.
         let margin = self.error * Self::GROW;
         if self.value - low > margin && (low + 1.0) - self.value > margin {
             Ok(low)
@@ -305,7 +308,7 @@ impl Real for Bounded {
         if scaled - margin >= 255.0 {
             return Ok(255);
         }
-        // No decision by a NaN: it is neither.
+        // A NaN passes neither of the comparisons above nor those below.
         let whole = scaled as i32;
         let rest = scaled - f64::from(whole);
         if rest > margin && 1.0 - rest > margin {

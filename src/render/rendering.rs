@@ -46,7 +46,7 @@ impl Rendering<'_> {
         let fallback = match choice {
             Choice::Cpu(why) => why.clone(),
             Choice::Gpu(live) => match self.on_gpu(live, emit, watch) {
-                // Found before the first band, so nothing is rendered twice.
+                // These errors are found before the first band, so nothing is rendered twice.
                 Err(Error::Gpu(
                     error @ (GpuError::TooMany { .. }
                     | GpuError::TooLarge { .. }

@@ -130,7 +130,7 @@ fn doubtful_pixels_are_decided_and_none_is_dropped() {
             let right = rgb(&rendered(&on(Backend::Cpu)).1);
             tamper_with(few, DOUBTFUL);
             let (report, bands) = rendered(&on(Backend::Gpu));
-            // The last one comes as if it were sure.
+            // The last of these pixels is handed back as if the GPU were sure of it.
             tamper_with(&few[few.len() - 1..], SURE);
             let (_, dropped) = rendered(&Settings {
                 precision: Precision::Fast,
@@ -139,7 +139,7 @@ fn doubtful_pixels_are_decided_and_none_is_dropped() {
             tamper_with(&[], SURE);
             let report = report.unwrap();
             assert_eq!(report.revoked, None);
-            // And those that the shader itself is not sure of.
+            // Pixels that the shader itself is not sure of are counted too.
             assert!(report.refined >= few.len() as u64);
             assert!(rgb(&bands) == right, "{samples} samples, {jitter:?}");
             assert!(rgb(&dropped) != right);
@@ -238,7 +238,7 @@ fn only_doubtful_samples_are_computed() {
             report
         };
         let (few, one) = (computed(20), computed(1));
-        // Whatever is in the list, the same pixels are in doubt.
+        // The same pixels are in doubt, however much room the list has.
         assert_eq!([few.refined, one.refined], [report.refined; 2]);
         let all = report.refined * u64::from(samples);
         println!(

@@ -62,7 +62,7 @@ impl Parser<'_> {
         let examples = list(|row| format!("`{} {}`", row.name, row.example));
         let missing = list(|row| format!("`{}`", row.name));
         match block.stranger {
-            // Most likely the stranger is what is missing: one mistake, one message.
+            // The unknown attribute is most likely the missing one misspelt, so both are told in one message.
             Some(stranger) => {
                 if let Some(error) = self.errors.at(stranger) {
                     error

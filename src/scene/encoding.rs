@@ -1,4 +1,5 @@
-//! Is this a text at all? What is looked at before the lexer sees a byte of text → lex → parse → [`Scene`](super::Scene).
+//! Is this a text at all? What is looked at before the lexer sees a byte of text → lex → parse →
+//! [`Scene`](super::Scene).
 //!
 //! A picture, an archive or UTF-16 text in place of a scene is one mistake and gets one message. Bytes that are not
 //! UTF-8 inside what else is a scene are one more mistake among others.

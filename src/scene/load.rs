@@ -127,8 +127,8 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
 }
 
 impl Scene {
-    /// Whether the scene was made from the file `path`, so that nothing may be written there: what that file is, for people.
-    /// `file` is the scene's own, if it has one.
+    /// Whether the scene was made from the file `path`, so that nothing may be written there: what that file is, for
+    /// people. `file` is the scene's own, if it has one.
     pub fn is_made_from(&self, file: Option<&Path>, path: &Path) -> Option<String> {
         if file.is_some_and(|file| is_same_file(file, path)) {
             return Some("the scene itself".into());

@@ -44,7 +44,7 @@ impl<'t> Parser<'t> {
             return false;
         };
         let found = numbers.found();
-        // A row of one or three numbers does not take two.
+        // An attribute that takes one or three numbers does not take two.
         if found != max && found != counts.start {
             let error = wrong_count(row, &numbers, &counts, key.start..self.last_end);
             self.errors.report(error);
@@ -110,7 +110,7 @@ impl<'t> Parser<'t> {
     fn check_limit(&mut self, row: &Attribute, numbers: &Numbers<'t>, max: usize) -> bool {
         let tokens = &numbers.tokens;
         let mut broken = row.limit.broken(&numbers.values[..max]);
-        // One value that stands for three is wrong once.
+        // A single value that stands for three is reported once.
         broken.retain(|index| *index < tokens.len());
         let (Some(first), Some(last)) = (broken.first(), broken.last()) else {
             return true;

@@ -1,5 +1,6 @@
 //! Tokens to a [`Scene`]: entities and their blocks. What is inside a block is read in [`values`](super::values), what
-//! is not understood is skipped in [`recover`](super::recover), and a whole entity is checked in [`check`](super::check).
+//! is not understood is skipped in [`recover`](super::recover), and a whole entity is checked in
+//! [`check`](super::check).
 //!
 //! Every mistake of a file is reported in one run, and one mistake once: what was not understood is skipped up to
 //! where an entity or an attribute begins again, a missing brace is seen by what follows it, and what depends on
@@ -276,7 +277,7 @@ impl<'t> Parser<'t> {
                 }
                 TokenKind::Close => {
                     self.bump();
-                    // With as many `}` as stray `{`, the last one is the block's.
+                    // If there are as many `}` as stray `{`, the last `}` ends the block.
                     if extra == 0
                         || self.window[0].kind == TokenKind::End
                         || self.starts_entity(None)

@@ -71,7 +71,7 @@ impl<'t> Parser<'t> {
     fn skip_unknown(&mut self, head: Token<'t>) {
         let [first, second, _] = self.window;
         if first.kind == TokenKind::Open {
-            // Perhaps its name, and the type is missing.
+            // This word may be the name, and the type is missing.
             self.excuse(head);
         }
         if first.is_word() && second.kind == TokenKind::Open {

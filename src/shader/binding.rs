@@ -143,20 +143,23 @@ fn four_words(features: &Features) -> bool {
 
 bindings! {
     binding DISPATCH, "dispatch", "uniform", "Dispatch", "dispatch", |_| true, None;
-    /// Red, green, blue as f32 (255 is a full byte), then the packed bytes: red, green, blue from the lowest byte up, and in
-    /// the highest UNDECIDED where the CPU has to decide, else 0.
+    /// Red, green, blue as f32 (255 is a full byte), then the packed bytes: red, green, blue from the lowest byte up,
+    /// and in the highest UNDECIDED where the CPU has to decide, else 0.
     binding PIXELS, "pixels", WRITE, "array<vec4u>", "pixels", |f| f.contains(&Feature::Values), None;
-    /// Packed bytes of four pixels side by side, rows filled up: red, green, blue from the lowest byte up, and in the highest
-    /// UNDECIDED where the CPU has to decide, else 0.
+    /// Packed bytes of four pixels side by side, rows filled up: red, green, blue from the lowest byte up, and in the
+    /// highest UNDECIDED where the CPU has to decide, else 0.
     binding PIXELS, "pixels", WRITE, "array<vec4u>", "pixels",
         |f| f.contains(&Feature::Quad) && !f.contains(&Feature::Values), None;
-    /// The words hold red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide.
+    /// The words hold red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to
+    /// decide.
     binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !four_words(f), None;
     /// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
     binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !four_words(f), None;
-    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `index_table` reads.
+    /// One for each object of the scene, in file order; after them, if there are any, come the tables that
+    /// `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
-    /// One for each object of the scene, in file order; after them, if there are any, come the tables that `index_table` reads.
+    /// One for each object of the scene, in file order; after them, if there are any, come the tables that
+    /// `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
     binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
@@ -166,8 +169,8 @@ bindings! {
         |f| f.contains(&Feature::SphereBuffer) && !f.contains(&Feature::SpherePoint), Some(|p| records(&p.spheres));
     binding 5, "spheres", READ, "array<SphereAndHit>", "spheres",
         |f| f.contains(&Feature::SpherePoint), Some(|p| records(p.sphere_records()));
-    /// Where the list of each cell of the screen starts here, by rows from the bottom left, and where the last one ends; then
-    /// the lists: indices into `spheres`, the nearest first.
+    /// Where the list of each cell of the screen starts here, by rows from the bottom left, and where the last one
+    /// ends; then the lists: indices into `spheres`, the nearest first.
     binding 6, "screen_grid", READ, "array<u32>", "lists of spheres by tiles of the screen",
         |f| f.contains(&Feature::ScreenGrid), Some(|p| words(p.cell_lists()));
     binding 7, "bvh", READ, "array<BvhNode>", "tree nodes", |f| f.contains(&Feature::Bvh), Some(|p| records(&p.bvh));
@@ -183,7 +186,8 @@ bindings! {
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.materials));
     binding 13, "lights", READ, "array<Light>", "lights",
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.lights));
-    /// The planes and rectangles for rays from anywhere; each object of the scene knows its place here or among the spheres.
+    /// The planes and rectangles for rays from anywhere; each object of the scene knows its place here or among the
+    /// spheres.
     binding 14, "world_planes", READ, "array<WorldPlane>", "planes for all rays",
         |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
     binding 15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",

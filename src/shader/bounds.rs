@@ -1,5 +1,5 @@
-//! Error bounds for f32 on the GPU: the model of its arithmetic, the constants named in `shaders/`, and the literal bounds
-//! that the host derives for forms over the pixel. Each constant is derived in docs/NUMERICS.md under its name.
+//! Error bounds for f32 on the GPU: the model of its arithmetic, the constants named in `shaders/`, and the literal
+//! bounds that the host derives for forms over the pixel. Each constant is derived in docs/NUMERICS.md under its name.
 
 use crate::prepare::plane::Step;
 use crate::real::Bounded;
@@ -25,8 +25,8 @@ named! {
     LEAST_INVERSE = 1.0 / (1_u64 << 40) as f64;
     /// Directions that are known less well than this are not followed: the bounds are first order there.
     DIR_LIMIT = 1.0 / 128.0;
-    /// Hits whose 1/s is less than this many times its bound are left to the CPU where their error goes on: the bounds that
-    /// follow are first order.
+    /// Hits whose 1/s is less than this many times its bound are left to the CPU where their error goes on: the bounds
+    /// that follow are first order.
     FIRST_ORDER = 128.0;
     /// What a bound of the first order is multiplied by: products of two errors are below a hundredth of it.
     SECOND_ORDER = 1.01;
@@ -167,7 +167,8 @@ pub fn upper_bound(value: Bounded) -> f64 {
 }
 
 /// The border `at` of a half-plane of pixels, x ≥ at or x ≤ at for one coordinate, as a form whose sign no rounding can
-/// change: it runs midway between two rays that are neighbours. None where the pixels are too far from the anchor for that.
+/// change: it runs midway between two rays that are neighbours. None where the pixels are too far from the anchor for
+/// that.
 pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     let axis = step.axis;
     if screen.lattice == 0.0 {

@@ -1,9 +1,9 @@
 //! The WGSL for exactly one scene, put together from the files of `shaders/`, whose directives
 //! [`preprocess`](super::preprocess) resolves.
 //!
-//! `//#insert` is replaced by what is written here: records' structs, bindings, the objects of a small scene as literals, the
-//! procedural shaders used. Helpers that only some shaders call (`color_wheel`, `pplane_odd`, …) come in when a text that does
-//! come in names them.
+//! `//#insert` is replaced by what is written here: records' structs, bindings, the objects of a small scene as
+//! literals, the procedural shaders used. Helpers that only some shaders call (`color_wheel`, `pplane_odd`, …) come in
+//! when a text that does come in names them.
 
 use std::fmt::Write as _;
 
@@ -173,8 +173,8 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     text
 }
 
-/// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function, with
-/// the object and its group.
+/// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function,
+/// with the object and its group.
 fn unrolled_world(
     packed: &Packed,
     features: &FeatureSet,

@@ -21,8 +21,9 @@ pub const LOOP_ITERATIONS: usize = LOOP_LIMIT / 2;
 /// Most rays that wait while another is followed; a pixel that needs more is handed to the CPU.
 const STACK: usize = 8;
 
-/// Of a pixel that the GPU does not decide, samples off by more than this (255 is a full byte) are left to the CPU too: what
-/// they leave open would cost all others. Tried from 1/1000 to 1: around 1/8 the CPU has the fewest samples to compute.
+/// Of a pixel that the GPU does not decide, samples off by more than this (255 is a full byte) are left to the CPU too:
+/// what they leave open would cost all others. Tried from 1/1000 to 1: around 1/8 the CPU has the fewest samples to
+/// compute.
 const FINE: f32 = 0.125;
 
 /// The numbers that the text refers to by name.
@@ -94,7 +95,7 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         ]);
     }
     let words = set.partial_words();
-    // The last round of each of up to four loops only finds its end.
+    // Each of up to four loops takes one more iteration, which only finds its end.
     let primary_steps = packed.loop_iterations() + 4;
     counts.extend([
         (Feature::Partial, "PARTIAL_WORDS", words as usize),
@@ -111,7 +112,7 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         ),
     ]);
     if let Some(lit) = &packed.lit {
-        // The last round of either loop only finds its end.
+        // Either loop takes one more iteration, which only finds its end.
         let steps = lit.loop_iterations() + 2;
         let in_shadows = has(Feature::WorldLoop) && has(Feature::AnyHit);
         counts.extend([

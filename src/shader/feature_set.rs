@@ -99,8 +99,8 @@ const QUAD_OBJECTS: [usize; 2] = [8, 4];
 pub const SOFTWARE_LANES: u32 = 8;
 
 impl FeatureSet {
-    /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a limit on
-    /// loops (see [`Gpu::lanes`](crate::gpu::device::Gpu::lanes)).
+    /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a
+    /// limit on loops (see [`Gpu::lanes`](crate::gpu::device::Gpu::lanes)).
     pub fn new(packed: &Packed, settings: &Settings, lanes: u32) -> Self {
         let objects = packed
             .lit
@@ -156,8 +156,8 @@ impl FeatureSet {
         }
     }
 
-    /// The same with as little of the scene's numbers in the text as may be: for pictures of which each is a little different
-    /// from the one before. Not for certified ones, whose bounds are in the text.
+    /// The same with as little of the scene's numbers in the text as may be: for pictures of which each is a little
+    /// different from the one before. Not for certified ones, whose bounds are in the text.
     #[must_use]
     pub fn while_moving(self) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! The kinds of surface that the shader tells apart: their codes in [`Object::kind`](super::records::Object::kind), and the
-//! WGSL of what each does to the ambient reflectivity.
+//! The kinds of surface that the shader tells apart: their codes in [`Object::kind`](super::records::Object::kind), and
+//! the WGSL of what each does to the ambient reflectivity.
 
 use crate::procedural::{Family, Shader};
 
@@ -61,8 +61,8 @@ impl SurfaceKind {
             .find_map(|family| family.shaders().get(self.shader_of(family)? as usize))
     }
 
-    /// The brightest channel that it makes of an ambient reflectivity with this brightest channel. (Of a tiled plane's other
-    /// material too, which counts as a material of its own.)
+    /// The brightest channel that it makes of an ambient reflectivity with this brightest channel. (Of a tiled plane's
+    /// other material too, which counts as a material of its own.)
     pub fn brightest(self, ambient: f64) -> f64 {
         match self {
             // A texel is at most 255/256.
@@ -82,7 +82,8 @@ impl SurfaceKind {
         }
     }
 
-    /// Its case in `getamb` of `shaders/surface.wgsl`, which has made `shade.color` the material's ambient reflectivity.
+    /// Its case in `getamb` of `shaders/surface.wgsl`, which has made `shade.color` the material's ambient
+    /// reflectivity.
     pub fn ambient_case(self, lit: bool, certified: bool) -> Option<String> {
         if !self.modulates_ambient(lit) {
             return None;

@@ -9,7 +9,8 @@ pub fn literal(value: f32) -> String {
     match exponent {
         // Subnormals may be flushed anyway; zero keeps the text short.
         0 => "0f".into(),
-        // Larger than any f32: no scene that keeps its limits gets here but through overflow; the largest stands for it.
+        // Larger than any f32: no scene that keeps its limits gets here but through overflow; the largest stands for
+        // it.
         255 => format!("{sign}0x1.fffffep+127f"),
         _ => {
             let digits = format!("{fraction:06x}");

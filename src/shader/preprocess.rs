@@ -1,7 +1,7 @@
 //! The directives of WGSL files, resolved: what makes one text the shaders of all scenes.
 //!
-//! A line `//#if name` … `//#else` … `//#end` keeps its lines where the name holds, and a line that ends in `//~` stays only
-//! where pixels are certified. `//#insert what` is replaced by what is written for it.
+//! A line `//#if name` … `//#else` … `//#end` keeps its lines where the name holds, and a line that ends in `//~` stays
+//! only where pixels are certified. `//#insert what` is replaced by what is written for it.
 
 /// What a file's directives are resolved with.
 pub struct Directives<'a> {
@@ -16,8 +16,8 @@ pub struct Directives<'a> {
 /// Appends the lines of `file` that stay to `text`.
 ///
 /// # Errors
-/// A directive that means nothing, an unknown name, an `//#if` without end. All directives are checked, those of parts that
-/// are left out too: a misspelt name must not silently drop a bound.
+/// A directive that means nothing, an unknown name, an `//#if` without end. All directives are checked, those of parts
+/// that are left out too: a misspelt name must not silently drop a bound.
 pub fn preprocess(
     file: &str,
     directives: &Directives<'_>,

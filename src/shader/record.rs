@@ -1,5 +1,5 @@
-//! What a record of the GPU is: one list of fields from which its Rust struct, its WGSL struct, its literal, the check of
-//! its numbers' range and its layout follow. The lists stand in [`records`](super::records).
+//! What a record of the GPU is: one list of fields from which its Rust struct, its WGSL struct, its literal, the check
+//! of its numbers' range and its layout follow. The lists stand in [`records`](super::records).
 
 use std::fmt::Debug;
 

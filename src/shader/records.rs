@@ -61,8 +61,9 @@ records! {
         side_errors: [f32; 4],
     }
 
-    /// A sphere as primary rays see it, over the pixel (X, Y) from its anchor: 1/s = gain·(along + √disc) for the nearer
-    /// hit, along linear and disc quadratic. Where the outline is an ellipse the anchor is a pixel next to its middle.
+    /// A sphere as primary rays see it, over the pixel (X, Y) from its anchor: 1/s = gain·(along + √disc) for the
+    /// nearer hit, along linear and disc quadratic. Where the outline is an ellipse the anchor is a pixel next to its
+    /// middle.
     Sphere as "Sphere" {
         /// e·W over (X, Y, 1), the pixel from `anchor`.
         along: [f32; 3],
@@ -125,7 +126,8 @@ records! {
         count: u32,
     }
 
-    /// The tiles of a `tiled_plane`: their indices along both directions are floor(row_i·P + fraction_i), up to `parity`.
+    /// The tiles of a `tiled_plane`: their indices along both directions are floor(row_i·P + fraction_i), up to
+    /// `parity`.
     TiledPlane as "Tiled" {
         /// Tiles a unit along the first direction, times the direction.
         row_0: [f32; 3],

@@ -1,4 +1,5 @@
-//! Lit scenes that ask for trouble: each ends soon, with a picture or with what is wrong; none hangs or is cut silently.
+//! Lit scenes that ask for trouble: each ends soon, with a picture or with what is wrong; none hangs or is cut
+//! silently.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -161,9 +162,9 @@ fn a_chain_of_a_thousand_panes() {
         .collect();
     let wall = "plane wall { material grey normal 0 0 1 point 0 0 -11 }\n";
     let lights = [light(0, "4 3 -10.5", 3.0), light(1, "4 3 5", 3.0)].concat();
-    // A picture of few pixels: rays in its middle go through all the panes, and from each of them on to the lights; those
-    // beside it meet the wall alone, and look from there through all panes at once. Neighbours on the GPU, they do not
-    // share one count of steps.
+    // A picture of few pixels: rays in its middle go through all the panes, and from each of them on to the lights;
+    // those beside it meet the wall alone, and look from there through all panes at once. Neighbours on the GPU, they
+    // do not share one count of steps.
     renders(&[&panes, wall, &lights].concat(), &["--size", "8x6"]);
 }
 

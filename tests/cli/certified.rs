@@ -1,5 +1,5 @@
-//! Certified pictures as a user meets them: the report, the verdicts, the exit code, what is remembered. Tests that say so
-//! need an adapter, and fail without one.
+//! Certified pictures as a user meets them: the report, the verdicts, the exit code, what is remembered. Tests that say
+//! so need an adapter, and fail without one.
 
 use std::fs;
 
@@ -142,7 +142,8 @@ fn the_height_of_bands_changes_no_byte() {
     }
 }
 
-/// Needs an adapter. The test is run once, and remembered where caches go; where that cannot be written it is run again.
+/// Needs an adapter. The test is run once, and remembered where caches go; where that cannot be written it is run
+/// again.
 #[test]
 fn the_self_test_is_remembered() {
     let desk = Desk::new();

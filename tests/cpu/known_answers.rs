@@ -1,5 +1,6 @@
 //! The pixels that scenes state themselves, as `#= x y r g b` with (0, 0) at the bottom left: worked out by hand, or
-//! derived from exact arithmetic. The CPU has to give them all; f64 with bounds alone gives most, and never a wrong one.
+//! derived from exact arithmetic. The CPU has to give them all; f64 with bounds alone gives most, and never a wrong
+//! one.
 
 use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::pixel::ExactTracer;

@@ -152,8 +152,8 @@ fn values_are_the_nearest_f32() {
     }
 }
 
-/// A pixel part of whose samples is known: the others alone are traced, and its bytes are those of the whole. A part that
-/// is off, or that says it holds a sample more than it does, is seen in the bytes.
+/// A pixel part of whose samples is known: the others alone are traced, and its bytes are those of the whole. A part
+/// that is off, or that says it holds a sample more than it does, is seen in the bytes.
 #[test]
 fn what_is_missing_of_a_part_is_added() {
     const SAMPLES: u32 = 40;

@@ -1,5 +1,5 @@
-//! How a picture is cut into pieces changes no byte of it: bands of different heights, rows rendered alone, one thread or
-//! many, the CPU or the GPU. Needs an adapter, and fails without one.
+//! How a picture is cut into pieces changes no byte of it: bands of different heights, rows rendered alone, one thread
+//! or many, the CPU or the GPU. Needs an adapter, and fails without one.
 
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! The same picture from two drivers: the one that is used anyhow, and a second one, whose Vulkan ICD file
-//! `PLUMB_SECOND_DRIVER` names. `sh scripts/test.sh` fetches SwiftShader for it: another compiler, other arithmetic, so a
-//! byte that depends on how a driver rounds or rewrites has to differ. Fails without a second driver.
+//! `PLUMB_SECOND_DRIVER` names. `sh scripts/test.sh` fetches SwiftShader for it: another compiler, other arithmetic, so
+//! a byte that depends on how a driver rounds or rewrites has to differ. Fails without a second driver.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,7 +1,8 @@
 //! The GPU's f32 against the CPU on every scene of ours.
 //!
-//! Pixels that f64 itself cannot decide (an exact tie, or nearly one: found with error bounds) are counted apart. Of the
-//! others at least 99.95 % have to be the same. Scenes made so that f32 must fail are named here, with how much they may.
+//! Pixels that f64 itself cannot decide (an exact tie, or nearly one: found with error bounds) are counted apart. Of
+//! the others at least 99.95 % have to be the same. Scenes made so that f32 must fail are named here, with how much
+//! they may.
 
 use plumb::cpu::camera::camera_setpix;
 use plumb::cpu::trace::{Fault, Limits, Unobserved, ray_trace};
@@ -13,7 +14,8 @@ use crate::common;
 
 /// Hard cases whose margins lie below what f32 resolves, with the share of sure pixels that may differ, in per cent.
 const BEYOND_F32: &[(&str, f64)] = &[
-    // Tile edges run through rows of pixels: exact ties, moved by the 10⁻¹⁷ that 0.001 and 10¹⁶ differ from their doubles.
+    // Tile edges run through rows of pixels: exact ties, moved by the 10⁻¹⁷ that 0.001 and 10¹⁶ differ from their
+    // doubles.
     ("light_years", 1.0),
     ("millimetres", 1.0),
     // A screen 10⁻⁶ high before a grazing plane: rows whose values miss a byte's border by 10⁻⁷.

@@ -1,5 +1,5 @@
-//! Pictures rendered for a window: on a device that is open, onto a canvas on the GPU, given up when nobody wants them. Needs
-//! an adapter, and fails without one.
+//! Pictures rendered for a window: on a device that is open, onto a canvas on the GPU, given up when nobody wants them.
+//! Needs an adapter, and fails without one.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -1,5 +1,5 @@
-//! What the GPU computes, beside the CPU, beside another driver, and against what its bounds promise. Without an adapter
-//! all of these tests fail; `sh scripts/test.sh` sees to one.
+//! What the GPU computes, beside the CPU, beside another driver, and against what its bounds promise. Without an
+//! adapter all of these tests fail; `sh scripts/test.sh` sees to one.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

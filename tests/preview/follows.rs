@@ -124,8 +124,8 @@ fn a_file_that_begins_with_a_mistake_is_shown_once_it_is_mended() {
     close(program);
 }
 
-/// Memory that a thousand pictures may cost: buffers on their way back, what the driver keeps. One picture and its buffers
-/// are 1.2 MB, so a leak of every tenth would be seen.
+/// Memory that a thousand pictures may cost: buffers on their way back, what the driver keeps. One picture and its
+/// buffers are 1.2 MB, so a leak of every tenth would be seen.
 const GROWTH_KIB: u64 = 30 * 1024;
 
 #[test]

@@ -1,5 +1,5 @@
-//! How long it takes from saving the file to the picture on the screen, and how many pictures a second a drag shows. Measures,
-//! and asserts nothing about time: run it alone, on a machine that does nothing else.
+//! How long it takes from saving the file to the picture on the screen, and how many pictures a second a drag shows.
+//! Measures, and asserts nothing about time: run it alone, on a machine that does nothing else.
 //!
 //! ```sh
 //! PLUMB_PREVIEW_SCENE=scene.txt cargo test --release --features preview --test preview -- --ignored --nocapture times

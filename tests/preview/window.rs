@@ -1,5 +1,5 @@
-//! What the tests of `plumb preview` share: the program on a scene of its own, the pictures that it should show, and where in a
-//! screenshot they are.
+//! What the tests of `plumb preview` share: the program on a scene of its own, the pictures that it should show, and
+//! where in a screenshot they are.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! Every scene of ours against the tests' own oracle: 0 differing bytes, on every backend that is certified.
 //!
-//! Large pictures are made smaller, everything else is kept; `PLUMB_CERTIFY_FULL=1` leaves them as they are (5 minutes).
+//! Large pictures are made smaller, everything else is kept; `PLUMB_CERTIFY_FULL=1` leaves them as they are (5
+//! minutes).
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,4 +1,5 @@
-//! The oracle's own arithmetic: balls hold what they must and are small, towers find zeros and only zeros, cosines are right.
+//! The oracle's own arithmetic: balls hold what they must and are small, towers find zeros and only zeros, cosines are
+//! right.
 //!
 //! What the oracle says about pictures rests on this and on the text of docs/SCENE.md.
 

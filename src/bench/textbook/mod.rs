@@ -1,7 +1,7 @@
 //! The textbook's way, in f32 on the GPU: how a scene is rendered that nobody prepared with care. For the report alone.
 //!
-//! Two variants of one shader (`textbook.wgsl`), which show what precision costs: one whose scene the host has prepared in
-//! f64, so that only the quadratic formula is the textbook's; one that gets the scene's numbers, rounded to f32, and
+//! Two variants of one shader (`textbook.wgsl`), which show what precision costs: one whose scene the host has prepared
+//! in f64, so that only the quadratic formula is the textbook's; one that gets the scene's numbers, rounded to f32, and
 //! nothing else. Both ask every object for every ray, which is why they stop at [`MOST_SPHERES`].
 
 mod records;

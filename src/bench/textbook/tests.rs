@@ -38,8 +38,8 @@ fn of_ours(name: &str, size: [u32; 2]) -> Scene {
     scene
 }
 
-/// Honest code: where nothing is hard it gets no more wrong than f32 does. That is one in fifty pixels at most: bytes off by one
-/// under a wheel of cosines; rows and columns of walls that meet the screen's edge, where z is 0 exactly.
+/// Honest code: where nothing is hard it gets no more wrong than f32 does. That is one in fifty pixels at most: bytes
+/// off by one under a wheel of cosines; rows and columns of walls that meet the screen's edge, where z is 0 exactly.
 #[test]
 fn nearly_right_where_nothing_is_hard() {
     let gpu = gpu();

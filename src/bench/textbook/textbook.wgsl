@@ -1,9 +1,10 @@
-// What a careful reader of the course notes writes, in f32: formula by formula, a loop over the objects, no tricks. For the
-// report alone (`plumb bench`); no picture that anybody asked for is rendered with it.
+// What a careful reader of the course notes writes, in f32: formula by formula, a loop over the objects, no tricks. For
+// the report alone (`plumb bench`); no picture that anybody asked for is rendered with it.
 //
-// Two shaders are made of it (and for `report`, which tells what primary rays hit, two more without lights). In `prepared` ones the host has taken in f64, and rounded once, what does not depend on the
-// ray: everything is relative to the viewpoint, normals and rows are of unit length, N·(Q − V) and where tiles begin are known.
-// In the others (`//#else`) it hands over the scene's own numbers, and the shader starts from those.
+// Two shaders are made of it (and for `report`, which tells what primary rays hit, two more without lights). In
+// `prepared` ones the host has taken in f64, and rounded once, what does not depend on the ray: everything is relative
+// to the viewpoint, normals and rows are of unit length, N·(Q − V) and where tiles begin are known. In the others
+// (`//#else`) it hands over the scene's own numbers, and the shader starts from those.
 
 const WORKGROUP = 16;
 const NOTHING = 0xffffffffu;

@@ -3,9 +3,9 @@
 //!
 //! For scenes without lights, a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's,
 //! so a pixel that is sure here has its exact bytes; the others, and surfaces that are not plain or tiled, are left to
-//! [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is that of `shaders/` with `certified`, in loops that a
-//! compiler makes vectors of: here the closest hits, in `shade` their colours. So this is the WGSL's twin: a formula or
-//! a bound that changes in one of the two changes in the other. [`cpu`](crate::cpu) is the referee of both.
+//! [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is that of `shaders/` with `certified`, in loops
+//! that a compiler makes vectors of: here the closest hits, in `shade` their colours. So this is the WGSL's twin: a
+//! formula or a bound that changes in one of the two changes in the other. [`cpu`](crate::cpu) is the referee of both.
 
 mod shade;
 

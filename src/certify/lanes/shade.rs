@@ -120,7 +120,7 @@ impl Lanes {
                 let index = row[0] * x + row[1] * y + row[2] * z + fraction;
                 let nearest = (index + WHOLE) - WHOLE;
                 let beside = index - nearest;
-                // A NaN is no less than anything.
+                // A NaN fails this comparison, and so is not certain.
                 let small = index.abs() < 4_194_304.0;
                 tiles.certain[i] &=
                     small & (beside.abs() > plane.row_lengths[axis] * error + plane.errors[axis]);

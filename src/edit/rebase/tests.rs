@@ -119,7 +119,7 @@ fn what_was_saved_is_dropped_without_a_word() {
     let (old, new) = (scene(&[&text]), parse_text("written", &written).unwrap());
     assert_eq!(changes.rebase(&old, &new), []);
     assert!(changes.is_empty());
-    // Not so what was changed further while it was saved.
+    // A value that was changed again while the file was saved stays changed.
     changes.set(Target::Light(0), [8.0; 3]).unwrap();
     assert_eq!(changes.rebase(&new, &new), []);
     assert_eq!(changes.get(Target::Light(0)), Some([8.0; 3].into()));

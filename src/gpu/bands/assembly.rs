@@ -61,7 +61,7 @@ impl Assembly {
         partials.take(rectangle, self.width as u32, layout.words, list);
         let columns = rectangle.columns.start as usize..rectangle.columns.end as usize;
         let pixel_bytes = if self.values { 16 } else { 4 };
-        // A row may be longer than it has pixels.
+        // A row of the buffer may be longer than the row of pixels that it holds.
         for (row, line) in bytes.chunks_exact(bytes.len() / rows).enumerate() {
             let line = &line[..columns.len() * pixel_bytes];
             let place = row * self.width + columns.start..row * self.width + columns.end;

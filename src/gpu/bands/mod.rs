@@ -88,7 +88,7 @@ pub fn run(
         let rectangle = plan.next();
         let mut finished = None;
         if open == 2 || (rectangle.is_none() && open > 0) {
-            // The older of the two slots: the other one's work goes on meanwhile.
+            // The older of the two slots is read back, while the GPU goes on with the other one's work.
             let oldest = if open == 2 { next } else { 1 - next };
             if let Some(slot) = &mut slots[oldest] {
                 let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
@@ -115,7 +115,7 @@ pub fn run(
             next = 1 - next;
             open += 1;
         }
-        // Only now, with the GPU busy: whoever takes the band may keep us waiting.
+        // The band is handed on only now, while the GPU is busy: whoever takes it may keep us waiting.
         if let Some(band) = finished {
             let taken = hand_on(band);
             watch.lap(Phase::Held);
@@ -142,7 +142,8 @@ fn largest_dispatch(gpu: &Gpu, pipeline: &Pipeline, width: u32, rows: &Range<u32
         };
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
     let offsets = u64::from(pipeline.offsets) * OFFSET_BYTES;
-    // A row of workgroups at least, whatever it takes; wgpu says so if it is too much.
+    // A dispatch has at least one row of workgroups, whatever the offsets take; wgpu reports an error if that is too
+    // much.
     let by_offsets = MAX_OFFSETS
         .checked_div(offsets)
         .unwrap_or(u64::MAX)

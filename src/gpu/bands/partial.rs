@@ -114,7 +114,7 @@ impl Partials {
         };
         self.stride = stride as usize;
         let before = self.words.len();
-        // Where there were more than there was room for, the list ends first.
+        // The counter may exceed the room that there was; then the list ends where the room does.
         let wanted = (count as usize).saturating_mul(4 * self.stride);
         self.words
             .extend(words(&records[..wanted.min(records.len())]));

@@ -81,7 +81,8 @@ impl Plan {
     /// Learns that a dispatch of so many pixels took so long.
     pub(super) fn took(&mut self, pixels: u64, seconds: f64) {
         let ideal = pixels as f64 * self.seconds / seconds.max(1e-6);
-        // Carefully: one measurement says little, and the next rectangle may be of another kind.
+        // The size changes by a factor of four at most: one measurement says little, and the next rectangle may cost
+        // differently.
         let (least, most) = (self.pixels as f64 / 4.0, self.pixels as f64 * 4.0);
         self.pixels = (ideal.clamp(least, most) as u64).clamp(1, self.largest);
     }
@@ -93,7 +94,8 @@ impl Plan {
                 if self.rows.is_empty() {
                     return None;
                 }
-                // Whole workgroups of rows if they fit; columns are cut where even those take too long.
+                // A rectangle has whole workgroups of rows if they fit; its columns are cut where even one row of
+                // workgroups takes too long.
                 let fitting = (self.largest / u64::from(self.width))
                     .max(1)
                     .min(u64::from(u32::MAX)) as u32;

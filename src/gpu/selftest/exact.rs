@@ -114,7 +114,7 @@ pub(super) fn two_sum(x: f32, y: f32, sum: f32, tail: f32) -> Option<bool> {
         return None;
     }
     let (x, y) = (f64::from(x), f64::from(y));
-    // x + y in two f64, and what the device says in two f64: normalised both, so equal as numbers if equal in parts.
+    // Both x + y and the device's sum are written as two f64 in normal form, so they are equal if their parts are.
     let exact = normal(x, y);
     Some(sum.is_finite() && exact == normal(f64::from(sum), f64::from(tail)))
 }

@@ -43,11 +43,11 @@ pub(super) fn operands() -> Vec<[u32; 2]> {
             bits & 0x807f_ffff | (127 - width / 2 + r % width) << 23
         };
         pairs.push(match i % 5 {
-            // Of the same size.
+            // Operands of about the same size.
             0 => [number(p, 0, 2), number(q, r, 2)],
-            // Of any ordinary size.
+            // Operands of any ordinary size.
             1 => [number(p, r, 60), number(q, r >> 16, 60)],
-            // Nearly opposite: all but the last bits cancel.
+            // Operands that are nearly opposite: all but their last bits cancel.
             2 => {
                 let x = number(p, r, 40);
                 [x, (x ^ 0x8000_0000).wrapping_add(q % 9).wrapping_sub(4)]

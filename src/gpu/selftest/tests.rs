@@ -103,7 +103,7 @@ fn one_wrong_word_is_noticed() {
     let results = right(&pairs);
     for check in CHECKS {
         for word in check.words.clone() {
-            // Somewhere in the operands where the check looks.
+            // Finds a pair of operands that this check looks at.
             let row = (1..pairs.len())
                 .rev()
                 .find(|row| {
@@ -163,7 +163,7 @@ fn a_last_place_is_noticed() {
         judged("x + y", at(1.0, 1.0), &[2_f32.to_bits() + 1]),
         Some(false)
     );
-    // Cancelled tails, as compilers leave them without a barrier.
+    // Without a barrier compilers cancel tails to 0, which the test has to notice.
     let words = [1_f32.to_bits(), 0];
     assert_eq!(
         judged("two_sum behind the barrier", at(1.0, half), &words),

@@ -120,7 +120,7 @@ impl App {
         let saving = match self.shared.lock().session.saving() {
             Ok(saving) => saving,
             Err(why) => {
-                // Not under the lock.
+                // The message is sent after the lock is released.
                 self.teller.tell(Event::Saved(Err(why)));
                 return;
             }

@@ -1,7 +1,7 @@
 //! Signs from the system that something happened to the file: where to listen, and anew when that changes.
 //!
-//! A folder is listened to, not the file: what is renamed over the file is another one. Where the path is a symbolic link,
-//! so are the folder of the link's target and those in between.
+//! A folder is listened to, not the file: what is renamed over the file is another one. Where the path is a symbolic
+//! link, so are the folder of the link's target and those in between.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -103,7 +103,7 @@ impl Ears {
             }
         };
         let mut watcher = notify::recommended_watcher(move |event: notify::Result<Event>| {
-            // Signs that got lost are a sign, too.
+            // An error may mean lost signs, so it counts as a sign too.
             let sign = match event {
                 Ok(event) => is_change(event.kind) && concerned(&event),
                 Err(_) => true,

@@ -1,7 +1,8 @@
 //! When what is found in the file counts: the decisions of watching, without files or clocks.
 //!
-//! A save is not one moment: the file may be empty or missing for a while, or half written. What is found is told once it
-//! is found again a little later; an empty or missing file only when it stays so, since far more often it is on its way.
+//! A save is not one moment: the file may be empty or missing for a while, or half written. What is found is told once
+//! it is found again a little later; an empty or missing file only when it stays so, since far more often it is on its
+//! way.
 
 use std::time::Duration;
 

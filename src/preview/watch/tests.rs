@@ -1,5 +1,5 @@
-//! Watching real files. What has to come is waited for, for as long as a machine may need; what must not come is shown not
-//! to by what comes after it. Over many saves: [`long`].
+//! Watching real files. What has to come is waited for, for as long as a machine may need; what must not come is shown
+//! not to by what comes after it. Over many saves: [`long`].
 
 mod long;
 
@@ -85,7 +85,8 @@ impl Bench {
             .expect("news within the deadline")
     }
 
-    /// The next news are this text; but a file that is written over is empty for a moment, which a machine may draw out.
+    /// The next news are this text; but a file that is written over is empty for a moment, which a machine may draw
+    /// out.
     #[track_caller]
     fn expect_text(&self, text: &str) {
         let mut next = self.next();

@@ -33,7 +33,8 @@ fn holds_root(x: Bounded, square: &Ratio, scale: f64) -> bool {
     (low <= Ratio::ZERO || &low * &low <= *square) && &high * &high >= *square
 }
 
-/// How many results of random expressions lie outside of their bounds scaled; and how near the worst comes to its bound.
+/// How many results of random expressions lie outside of their bounds scaled; and how near the worst comes to its
+/// bound.
 fn outside(scale: f64, count: usize) -> (usize, f64) {
     let mut next = random();
     let (mut outside, mut worst) = (0, 0.0_f64);

@@ -218,7 +218,7 @@ impl Ball {
         if height < -1 {
             return Some(IBig::ZERO);
         }
-        // The floor of the number and a half.
+        // Rounding to the nearest integer is the floor of the number plus one half.
         let cut = (-self.exp) as usize;
         Some((&self.mid + (IBig::ONE << (cut - 1))) >> cut)
     }

@@ -38,9 +38,9 @@ fn pi(bits: usize) -> IBig {
 /// The cosine of 0 to 180 degrees.
 ///
 /// The series of the cosine at φ ≤ π, in fixed point with [`GUARD`] more bits. π is off by fewer than bits·40 units in
-/// the last place, φ likewise, φ² by seven times that; a term's error is multiplied by φ²/(k(k+1)), which is below 5 once
-/// and below 1 from then on, and takes up the error of φ² and 2 units. In all fewer than 2¹⁶·bits units: the ball has
-/// 2³² of them.
+/// the last place, φ likewise, φ² by seven times that; a term's error is multiplied by φ²/(k(k+1)), which is below 5
+/// once and below 1 from then on, and takes up the error of φ² and 2 units. In all fewer than 2¹⁶·bits units: the ball
+/// has 2³² of them.
 pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
     let precision = bits + GUARD;
     let degrees = ratio(angle);
@@ -65,9 +65,9 @@ pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
 
 /// Whether the cosine of the angle can be had from rationals by square roots.
 ///
-/// Every f64 is k/2^m degrees, so e^{iθ} is a root of unity of an order n that divides 360·2^m = 2^(3+m)·3²·5. The degree of
-/// cos θ is φ(n)/2, a power of two just if 9 does not divide n, that is, if 3 divides k. Otherwise cos θ is in no tower of
-/// square roots, and no number that is compared with it here can be equal to it.
+/// Every f64 is k/2^m degrees, so e^{iθ} is a root of unity of an order n that divides 360·2^m = 2^(3+m)·3²·5. The
+/// degree of cos θ is φ(n)/2, a power of two just if 9 does not divide n, that is, if 3 divides k. Otherwise cos θ is
+/// in no tower of square roots, and no number that is compared with it here can be equal to it.
 pub(super) fn by_roots(angle: f64) -> bool {
     let bits = angle.to_bits();
     let fraction = bits & ((1 << 52) - 1);

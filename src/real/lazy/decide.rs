@@ -166,7 +166,7 @@ impl Arena {
 
     /// The f64 enclosure, made narrower than this share of the number if it can be.
     pub(super) fn narrow(&mut self, x: Lazy, share: f64) -> Bounded {
-        // What is smaller than 10⁻³⁰ of the viewpoint's distance matters to nobody who asks for f64.
+        // An error below 10⁻³⁰ of the viewpoint's distance does not matter to a caller that asks for f64.
         let wide = |enclosure: Bounded| {
             enclosure.error > share * enclosure.value.abs() && enclosure.error > 1e-30
                 || enclosure.error.is_nan()
@@ -240,7 +240,8 @@ impl Arena {
     fn below_to(&mut self, root: u32, most: usize, known: impl Fn(&Node) -> bool) -> Vec<u32> {
         self.looks = self.looks.wrapping_add(1);
         if self.looks == 0 {
-            // Once in four thousand million looks, an old mark might be taken for a new one.
+            // The counter of walks has wrapped around: marks of old walks are erased, so that none is taken for a new
+            // one.
             self.nodes.iter_mut().for_each(|node| node.seen = 0);
             self.looks = 1;
         }
@@ -283,8 +284,8 @@ impl Arena {
         (order.len(), roots)
     }
 
-    /// The exact number, with so many roots in the tower at most. If it takes more, and there are some that were adjoined
-    /// for other numbers, then once again without those.
+    /// The exact number, with so many roots in the tower at most. If it takes more, and there are some that were
+    /// adjoined for other numbers, then once again without those.
     fn exact(&mut self, x: Lazy, most: usize) -> Result<Element, TooHard> {
         let others = self.tower.height() > 0;
         let most_now = most.max(self.tower.height().min(MOST_ROOTS));

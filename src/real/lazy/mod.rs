@@ -1,8 +1,9 @@
 //! Numbers that are computed when they are asked about: expressions over f64 by + − × ÷ √, decided exactly.
 //!
-//! A [`Lazy`] is a handle into its thread's arena. Every expression has an f64 enclosure from the start; where that does not
-//! decide, `decide` goes on: exactly at once where few roots are in it, else in balls of 128 bits and more, and
-//! exactly again where those do not separate a number from 0. Only what that is too hard for is presumed, and counted.
+//! A [`Lazy`] is a handle into its thread's arena. Every expression has an f64 enclosure from the start; where that
+//! does not decide, `decide` goes on: exactly at once where few roots are in it, else in balls of 128 bits and more,
+//! and exactly again where those do not separate a number from 0. Only what that is too hard for is presumed, and
+//! counted.
 
 mod arena;
 mod ball;
@@ -169,7 +170,8 @@ impl Real for Lazy {
         if let Ok(value) = self.bounded().nearest_f32() {
             return Ok(value);
         }
-        // Near the middle between two neighbours: which side decides, and on it the even one.
+        // The number is near the middle between two f32: its side of the middle decides, and on the middle the even one
+        // is taken.
         let enclosure = self.bounded();
         let (low, high) = (
             (enclosure.value - enclosure.error) as f32,

@@ -233,7 +233,7 @@ impl Tower {
         if a == Ordering::Equal || a == b {
             return Ok(b);
         }
-        // Of unlike signs: the larger in absolute value has its way.
+        // a and b√c have unlike signs, so the sign is that of the larger in absolute value.
         let norm = self.sign(&self.norm(r)?)?;
         Ok(if a == Ordering::Greater {
             norm
@@ -270,8 +270,8 @@ impl Tower {
 
     /// A root of `x` in the field of the first `level` roots.
     ///
-    /// If a + b√c = (m + l√c)², then m² + l²c = a and 2ml = b. With b = 0 one of m and l is 0: a or a/c is a square. Else
-    /// a² − b²c = (m² − l²c)² is a square n², and m² = (a ± n)/2.
+    /// If a + b√c = (m + l√c)², then m² + l²c = a and 2ml = b. With b = 0 one of m and l is 0: a or a/c is a square.
+    /// Else a² − b²c = (m² − l²c)² is a square n², and m² = (a ± n)/2.
     fn root_in(&self, x: &Element, level: usize) -> Result<Option<Element>, TooHard> {
         if let (Element::Rational(value), 0) = (x, level) {
             return Ok(rational::root(value).map(Element::Rational));

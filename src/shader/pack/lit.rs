@@ -146,7 +146,7 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         axis_mask[axis] = 0.0;
         fixed_coordinate[axis] = at.value as f32;
         if axis == 2 {
-            // All of it is below, or it would not be here.
+            // The whole plane is below; otherwise no ray could hit it and it would have been dropped.
             highest = f32::MAX;
         }
     }

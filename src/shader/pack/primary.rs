@@ -96,7 +96,8 @@ pub(super) fn rectangle(
     }
 }
 
-/// A sphere's outline as a conic: the discriminant over (X², XY, Y², X, Y, 1) from `anchor`, and W and e·W over (X, Y, 1).
+/// A sphere's outline as a conic: the discriminant over (X², XY, Y², X, Y, 1) from `anchor`, and W and e·W over (X, Y,
+/// 1).
 struct Outline {
     anchor: [i32; 2],
     disc: [Bounded; 6],
@@ -193,7 +194,7 @@ fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Optio
     let slope = (d * d / a + e * e / c).sqrt();
     let delta = 0.1 * mu;
     let root = (slope + (slope * slope + 4.0 * (mu - delta) * f).sqrt()) / (2.0 * (mu - delta));
-    // At least a pixel: the bounds of coordinates between pixels are for such.
+    // The reach is at least a pixel, since the bounds of coordinates between pixels assume that.
     let reach = [root / a.sqrt(), root / c.sqrt()].map(|r| (r * (1.0 + 1e-9)).max(1.0));
     let [x, y] = reach;
     let terms = a * x * x + b * x * y + c * y * y + d * x + e * y + f;

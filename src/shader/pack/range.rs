@@ -1,5 +1,5 @@
-//! The proof that no number on the GPU overflows: all numbers of all records are of moderate size, but for those that say in
-//! [`records`](crate::shader::records) why they need not be (docs/NUMERICS.md, section 9, "Ranges").
+//! The proof that no number on the GPU overflows: all numbers of all records are of moderate size, but for those that
+//! say in [`records`](crate::shader::records) why they need not be (docs/NUMERICS.md, section 9, "Ranges").
 
 use super::Packed;
 use crate::shader::binding::BINDINGS;

@@ -29,7 +29,7 @@ pub(super) fn tiled_plane(
         rows[1] * tiled.index[1].per_unit,
     ];
     let [even, odd] = tiled.materials;
-    // The shader gives even sums the object's own material.
+    // In the shader, tiles whose indices have an even sum are of the object's own material.
     let (other, flip) = if even == material {
         (odd, 0)
     } else {

@@ -1,5 +1,5 @@
-//! Tables of what is exactly known of a surface's indices along the columns and rows of pixels (docs/NUMERICS.md, section
-//! 9): where floor(index) is a fact of a column or row, the shader takes it from here for the pixels' own rays.
+//! Tables of what is exactly known of a surface's indices along the columns and rows of pixels (docs/NUMERICS.md,
+//! section 9): where floor(index) is a fact of a column or row, the shader takes it from here for the pixels' own rays.
 
 use dashu_int::IBig;
 
@@ -14,9 +14,9 @@ use crate::settings::Settings;
 /// What `index_table` in `shaders/surface.wgsl` reads, in the order in which it stands there behind the objects.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tables {
-    /// For each object the place of its first entry, 0 for none; then the entries: of each object one for each column of
-    /// the picture, then one for each row from the bottom. What the entries of a pixel's column and row say together is
-    /// known at the pixel.
+    /// For each object the place of its first entry, 0 for none; then the entries: of each object one for each column
+    /// of the picture, then one for each row from the bottom. What the entries of a pixel's column and row say together
+    /// is known at the pixel.
     ///
     /// Of tiles and blocks bit 2·i + 1 says that index i is known, and bit 2·i whether its floor, less the index's own
     /// parity, is odd. Of texels bits 15 and 31 say that column and row are known; they are in the bits below.
@@ -32,8 +32,8 @@ const MOST: usize = 1 << 18;
 const MOST_TEXELS: u32 = 0x7fff;
 
 impl Tables {
-    /// The tables of the planes that a primary ray can hit; none where pixels are not certified, or rays pass beside their
-    /// middles.
+    /// The tables of the planes that a primary ray can hit; none where pixels are not certified, or rays pass beside
+    /// their middles.
     pub(super) fn new(scene: &Scene, prepared: &Prepared<Bounded>, settings: &Settings) -> Self {
         let mut tables = Self::default();
         if !settings.has_gpu_bounds() || settings.supersampling().is_some() {
@@ -62,7 +62,7 @@ impl Tables {
 
 /// The entries of a surface; None if nothing is known.
 fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<Vec<u32>> {
-    // (For an index: whether there is anything to decide about it, and the bits of its floor.)
+    // For index number i, the bits that stand for its floor.
     let bits: &dyn Fn(usize, &IBig) -> u32 = match surface {
         Surface::Tiled(tiled) => &|i, floor| parity_bits(i, parity(floor) ^ tiled.index[i].parity),
         Surface::Pplane(pplane)
@@ -85,7 +85,7 @@ fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<V
         _ => false,
     };
     for (i, index) in (0..).zip(&indices) {
-        // Of a coordinate that all points of the plane share the records say it.
+        // An index along a coordinate that all points of the plane share stands in the plane's record.
         let Some(index) = index.as_ref().filter(|_: &&Index| !same(i)) else {
             continue;
         };
@@ -179,7 +179,7 @@ mod tests {
         assert!(tables.words.len() <= 7 + MOST);
         let with = tables.words[..7].iter().filter(|first| **first != 0);
         assert_eq!(with.count(), MOST / 70_000);
-        // Where one has no room there are none at all.
+        // If not even one table has room, there are none.
         scene.camera.pixeldim = [300_000, 2];
         assert_eq!(
             Packed::new(&scene, &Settings::default()).tables,

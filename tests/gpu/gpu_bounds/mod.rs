@@ -1,9 +1,9 @@
-//! The error bounds of the shaders, on the GPU: what they bound is within them, they are no larger than they need to be, and
-//! without them pixels that are called certain are wrong. Without an adapter these tests fail.
+//! The error bounds of the shaders, on the GPU: what they bound is within them, they are no larger than they need to
+//! be, and without them pixels that are called certain are wrong. Without an adapter these tests fail.
 //!
-//! Operands are random and adversarial; the truth is f64, whose own error is 10⁻⁸ of f32's. With `--nocapture` the tables are
-//! printed: how many values were compared, the worst and the median of |value − truth| / bound, for how many operands nothing
-//! was decided, and how many decisions were wrong.
+//! Operands are random and adversarial; the truth is f64, whose own error is 10⁻⁸ of f32's. With `--nocapture` the
+//! tables are printed: how many values were compared, the worst and the median of |value − truth| / bound, for how many
+//! operands nothing was decided, and how many decisions were wrong.
 
 #![allow(clippy::print_stdout, reason = "the tables, with --nocapture")]
 
@@ -29,8 +29,8 @@ use crate::common;
 const MANY: usize = 1 << 18;
 /// So many of them must have been decided.
 const DECIDED: usize = 60_000;
-/// The worst ratio must be at least this, for bounds that follow a ray, and for those of a whole picture: measured are 0.07
-/// and more, and 0.05 and more. A bound far too large would do no harm but to speed.
+/// The worst ratio must be at least this, for bounds that follow a ray, and for those of a whole picture: measured are
+/// 0.07 and more, and 0.05 and more. A bound far too large would do no harm but to speed.
 const TIGHT: f64 = 1.0 / 25.0;
 const TIGHT_LITERAL: f64 = 1.0 / 40.0;
 /// Where rays, points or places are off by all that they may be, bounds are nearly reached.
@@ -124,8 +124,8 @@ fn at_a_hit_point() {
     }
 }
 
-/// What need not be noticed: without it the other terms of its sum still cover the roundings of drivers that round to nearest,
-/// half as much as the model allows.
+/// What need not be noticed: without it the other terms of its sum still cover the roundings of drivers that round to
+/// nearest, half as much as the model allows.
 const COVERED: &[&str] = &[
     "POSITION_ROUNDINGS",
     "DISC_ROUNDINGS",

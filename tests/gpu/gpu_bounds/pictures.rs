@@ -70,8 +70,8 @@ pub(crate) enum Fault {
     NoBounds,
     /// No object has a table of indices.
     NoTables,
-    /// In the tables' entry for this row, of the first object that has any, an index is odd that is even, or the other way
-    /// round.
+    /// In the tables' entry for this row, of the first object that has any, an index is odd that is even, or the other
+    /// way round.
     Entry(u32),
     /// Tables are taken for hits of all rays.
     ForAllRays,

@@ -128,7 +128,8 @@ impl SampledPicture {
         ]
     }
 
-    /// The place nearest to `at`, in pixels, where a ray may pass: its pixel, its place in it, and what the shader is told of that.
+    /// The place nearest to `at`, in pixels, where a ray may pass: its pixel, its place in it, and what the shader is
+    /// told of that.
     fn place(&self, at: DVec2) -> ([i32; 2], DVec2, [f32; 2]) {
         let most = self.world.scene.camera.pixeldim.map(|n| f64::from(n - 1));
         let pixel = at.round().clamp(DVec2::ZERO, DVec2::from_array(most));

@@ -68,8 +68,8 @@ pub(crate) struct TrueRay {
 }
 
 impl TrueRay {
-    /// The shader is told a ray that is off by `errors` (base, direction) toward `way`, and bounds that are `slack` times
-    /// as large. Without an error the base is one that f32 has.
+    /// The shader is told a ray that is off by `errors` (base, direction) toward `way`, and bounds that are `slack`
+    /// times as large. Without an error the base is one that f32 has.
     pub(crate) fn new(
         base: DVec3,
         dir: DVec3,
@@ -146,8 +146,9 @@ pub(crate) fn with_constant(wgsl: &str, name: &str, value: &str) -> String {
     lines.join("\n")
 }
 
-/// Runs `body` once for each of the `count` items on the functions of a composed shader. It may name `i`, the buffer `items`
-/// of vec4f, and `answers`, of `vectors` vec4f for each item. `inputs` are the other buffers that it reaches, by binding.
+/// Runs `body` once for each of the `count` items on the functions of a composed shader. It may name `i`, the buffer
+/// `items` of vec4f, and `answers`, of `vectors` vec4f for each item. `inputs` are the other buffers that it reaches,
+/// by binding.
 pub(crate) fn run(
     gpu: &Gpu,
     wgsl: &str,

@@ -17,8 +17,8 @@ fn assert_has(wgsl: &str, lines: &[&str]) {
     }
 }
 
-/// A point as the shader has it, and truly, from the viewpoint: every other one is exact, and they may be off by as much as
-/// they are said to be.
+/// A point as the shader has it, and truly, from the viewpoint: every other one is exact, and they may be off by as
+/// much as they are said to be.
 fn point(rng: &mut Rng, items: &mut Vec<f32>, number: usize) -> DVec3 {
     let size = rng.log(-1.0, 3.0);
     let (told, near) = rounded(rng.within(size));

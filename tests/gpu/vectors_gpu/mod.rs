@@ -1,6 +1,6 @@
-//! The known answers of the notes (docs/SCENE.md, "The notes' known answers") in WGSL, on the GPU: the vector operations
-//! that plumb's shaders are made of, and the ray of a pixel by `shaders/camera.wgsl` itself, as plumb composes it. Without
-//! an adapter they fail.
+//! The known answers of the notes (docs/SCENE.md, "The notes' known answers") in WGSL, on the GPU: the vector
+//! operations that plumb's shaders are made of, and the ray of a pixel by `shaders/camera.wgsl` itself, as plumb
+//! composes it. Without an adapter they fail.
 
 mod operations;
 
@@ -53,7 +53,8 @@ fn open(wanted: Option<&str>) -> Gpu {
     })
 }
 
-/// Runs one invocation of the entry point `test`, which reads `input` at binding 100 and writes `count` of vec4f at 101.
+/// Runs one invocation of the entry point `test`, which reads `input` at binding 100 and writes `count` of vec4f
+/// at 101.
 fn run(wgsl: &str, input: &[u8], count: usize) -> Vec<DVec3> {
     let gpu = open(None);
     let gpu_device = &gpu.device;

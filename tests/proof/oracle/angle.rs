@@ -1,8 +1,8 @@
 //! The cosine of an angle in degrees: in roots where ruler and compass can make it, else enclosed by its series.
 //!
-//! An f64 is a whole number times a power of two, and 360 = 2³·3²·5: by Gauss and Wantzel its cosine lies in a tower of square
-//! roots just if the angle is a multiple of 3 degrees halved some times. The other cosines are equal to no number that a
-//! tower holds, so that balls separate them from every one in the end.
+//! An f64 is a whole number times a power of two, and 360 = 2³·3²·5: by Gauss and Wantzel its cosine lies in a tower of
+//! square roots just if the angle is a multiple of 3 degrees halved some times. The other cosines are equal to no
+//! number that a tower holds, so that balls separate them from every one in the end.
 
 use dashu_base::Abs;
 use dashu_int::IBig;
@@ -95,8 +95,9 @@ pub(crate) fn cosine(degrees: &RBig, bits: usize) -> Ball {
         sum += &term;
         k += 1;
     }
-    // Each term is off by less than 8 units (7 from the square's error in the first, less later), the rest by less than 1:
-    // 8·k in all, k < 2^10 terms for fewer than 2^12 bits. Each doubling 2c² − 1 makes it at most 4 times as much, and 2 more.
+    // Each term is off by less than 8 units (7 from the square's error in the first, less later), the rest by less than
+    // 1: 8·k in all, k < 2^10 terms for fewer than 2^12 bits. Each doubling 2c² − 1 makes it at most 4 times as much,
+    // and 2 more.
     for _ in 0..2 {
         sum = ((&sum * &sum) >> (places - 1)) - (IBig::ONE << places);
     }

@@ -1,5 +1,5 @@
-//! Balls: a whole number times a power of two, give or take a radius. Every operation returns a ball that holds the exact
-//! result for all operands in the balls given; only whole numbers are computed with, so nothing rounds unseen.
+//! Balls: a whole number times a power of two, give or take a radius. Every operation returns a ball that holds the
+//! exact result for all operands in the balls given; only whole numbers are computed with, so nothing rounds unseen.
 //!
 //! The bottom of the oracle: `real` evaluates its expressions in balls, of few bits first, of more where it must.
 

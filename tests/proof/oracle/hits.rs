@@ -1,8 +1,8 @@
 //! Where a line meets the objects (docs/SCENE.md, "Hits"), each at most once, nearest first: all that closest hits,
 //! shadows and rays straight through ask for.
 //!
-//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface. Parameters,
-//! not distances: the direction has any length.
+//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface.
+//! Parameters, not distances: the direction has any length.
 
 use std::cmp::Ordering;
 
@@ -24,8 +24,8 @@ pub(crate) struct Hit {
 }
 
 impl World<'_> {
-    /// The hits of a line that left from the object `last`; of several at one point the first in the file. With `end`, which
-    /// is base + direction, only those before it.
+    /// The hits of a line that left from the object `last`; of several at one point the first in the file. With `end`,
+    /// which is base + direction, only those before it.
     pub(crate) fn hits(
         &self,
         base: &Vector,
@@ -136,8 +136,9 @@ impl World<'_> {
                     // From f(0) = c > 0 to f(1), which needs no base.
                     let from_center = end - center;
                     let last = (&from_center.dot(&from_center) - square).sign()?;
-                    // Below 0 there is one root between. At 0, 1 is a root, and the nearer one just if the middle of both, b/a,
-                    // is not below 1; then the ray ends where it meets the sphere. Above 0 both are on one side of 1.
+                    // Below 0 there is one root between. At 0, 1 is a root, and the nearer one just if the middle of
+                    // both, b/a, is not below 1; then the ray ends where it meets the sphere. Above 0 both are on one
+                    // side of 1.
                     let both = || from_center.dot(direction).is_positive();
                     let blocks_at_lamp =
                         last == Ordering::Equal && self.rules.fault == Some(Fault::BlocksAtLamp);

@@ -1,7 +1,8 @@
-//! The oracle of the tests: every byte of any scene, in multiprecision or exactly, from the text of docs/SCENE.md alone.
+//! The oracle of the tests: every byte of any scene, in multiprecision or exactly, from the text of docs/SCENE.md
+//! alone.
 //!
-//! It shares the parsed scene with plumb, plain f64, and nothing else: no geometry, no arithmetic. Near is never taken for
-//! equal: what balls of 4,096 bits and towers of 7 square roots do not decide is reported, not guessed.
+//! It shares the parsed scene with plumb, plain f64, and nothing else: no geometry, no arithmetic. Near is never taken
+//! for equal: what balls of 4,096 bits and towers of 7 square roots do not decide is reported, not guessed.
 //!
 //! ```text
 //! plumb::scene::Scene ─ world ─► hits, surface ─► trace ─► bytes

@@ -1,6 +1,6 @@
-//! Exact real numbers as expressions: ratios, + − × ÷ √ and the cosines of angles, evaluated in balls of as many bits as a
-//! question needs. Where balls cannot separate two numbers, `tower` decides exactly or the question stays unresolved: near
-//! is never taken for equal.
+//! Exact real numbers as expressions: ratios, + − × ÷ √ and the cosines of angles, evaluated in balls of as many bits
+//! as a question needs. Where balls cannot separate two numbers, `tower` decides exactly or the question stays
+//! unresolved: near is never taken for equal.
 //!
 //! Stands between `ball` and `tower` below and the geometry of `hits` and `trace` above.
 

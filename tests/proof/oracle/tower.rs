@@ -1,9 +1,9 @@
-//! The exact sign of an expression, in a tower of square roots over the rationals: numbers a + b√c, where a, b and c are
-//! numbers of the storey below.
+//! The exact sign of an expression, in a tower of square roots over the rationals: numbers a + b√c, where a, b and c
+//! are numbers of the storey below.
 //!
-//! A root is adjoined without asking whether the storey below has it already. So a number may be written in more than one
-//! way, and zero is found by its sign: of a + b√c the sign is that of a and b where they agree, else it takes that of
-//! a² − b²c, one storey down. Nothing is assumed but c ≥ 0.
+//! A root is adjoined without asking whether the storey below has it already. So a number may be written in more than
+//! one way, and zero is found by its sign: of a + b√c the sign is that of a and b where they agree, else it takes that
+//! of a² − b²c, one storey down. Nothing is assumed but c ≥ 0.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;

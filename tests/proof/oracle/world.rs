@@ -1,7 +1,7 @@
 //! The scene in exact reals: made from `plumb::scene` once a thread, read by `hits`, `surface` and `trace`.
 //!
-//! Normals keep the length that the file gives them, and so do the sides of rectangles: lengths, which take square roots,
-//! stand apart, where docs/SCENE.md wants unit vectors.
+//! Normals keep the length that the file gives them, and so do the sides of rectangles: lengths, which take square
+//! roots, stand apart, where docs/SCENE.md wants unit vectors.
 
 use std::collections::HashMap;
 

@@ -1,8 +1,10 @@
-//! Random scenes against the oracle, every byte: shapes that touch, graze and coincide, exactly or nearly (see `strategy`).
+//! Random scenes against the oracle, every byte: shapes that touch, graze and coincide, exactly or nearly (see
+//! `strategy`).
 //!
-//! Scenes are numbered; a number is a seed and gives the same scene everywhere.
-//! `PLUMB_RANDOM_SCENES=5000` tries that many, `PLUMB_RANDOM_FIRST=123` starts at that number: one failing scene is tried
-//! again by `PLUMB_RANDOM_FIRST=123 PLUMB_RANDOM_SCENES=1`; with `PLUMB_RANDOM_SHOW=1` every scene is printed. A failing scene is made as small as it gets and printed as text.
+//! Scenes are numbered; a number is a seed and gives the same scene everywhere. `PLUMB_RANDOM_SCENES=5000` tries that
+//! many, `PLUMB_RANDOM_FIRST=123` starts at that number: one failing scene is tried again by
+//! `PLUMB_RANDOM_FIRST=123 PLUMB_RANDOM_SCENES=1`; with `PLUMB_RANDOM_SHOW=1` every scene is printed. A failing scene
+//! is made as small as it gets and printed as text.
 
 mod motifs;
 mod strategy;
