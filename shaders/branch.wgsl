@@ -33,7 +33,9 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
     let share = ended.weight * (kept / ended.total * CAMERA_GAIN);
     (*traced).color += share * lit.color;
 //#if certified
-    (*traced).error += share * (lit.error * (1.0 + ended.weight_error) + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + 12.0 * U))
+    (*traced).error += share
+        * (lit.error * (1.0 + ended.weight_error)
+        + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + 12.0 * U))
         + 2.0 * U * (*traced).color;
 //#end
 }

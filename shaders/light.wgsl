@@ -47,7 +47,8 @@ fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
 //#end
         }
         // The product is kept above 0, so that it is never flushed: the glint shines through however little else does.
-        transmittance = max(transmittance * (materials[tile_material(blocker)].tint * material.transparency), vec3f(0x1p-120f));
+        transmittance = max(transmittance * (materials[tile_material(blocker)].tint * material.transparency),
+            vec3f(0x1p-120f));
         roundings += 4.0; //~
         range.skip = blocker.group;
         range.beyond = hit.t;
@@ -155,7 +156,8 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     }
     let full = diffuse * light.emissivity * blocked.transmittance * (inverse * CAMERA_UNIT);
     shade.color = full * max(c, 0.0);
-    shade.error = full * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
+    shade.error = full //~
+        * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
 //#if glint
     let material = materials[objects[point.object].material];
     if material.shininess > 0.0 {
@@ -169,7 +171,8 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#if certified
         let back_error = seen.base_error + point.error + 2.0 * U * back_2 * back_inverse;
         let half_error = 1.4 * back_error * back_inverse + d_error + (DIRECTION_ROUNDINGS + 4.0) * U;
-        let cosine_error = 1.4 * half_error * half_inverse + point.normal_error + (DIRECTION_ROUNDINGS + DOT_ROUNDINGS) * U;
+        let cosine_error = 1.4 * half_error * half_inverse + point.normal_error
+            + (DIRECTION_ROUNDINGS + DOT_ROUNDINGS) * U;
         let near = (back_2 * back_inverse > 4.0 * back_error) & (half_2 * half_inverse > 4.0 * half_error);
         doubt |= !near | (material.power == 0u);
         if cosine > -cosine_error {

@@ -35,7 +35,8 @@ fn plane_hits(plane: Plane, ray: Ray) -> PrimaryIntersection {
 // The rectangle as a primary ray meets it.
 fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> PrimaryIntersection {
     let at = vec3f(from_pixel(ray, CAMERA_ANCHOR), 1.0);
-    let sides = vec4f(dot(rectangle.side_0, at), dot(rectangle.side_1, at), dot(rectangle.side_2, at), dot(rectangle.side_3, at));
+    let sides = vec4f(dot(rectangle.side_0, at), dot(rectangle.side_1, at), dot(rectangle.side_2, at),
+        dot(rectangle.side_3, at));
     var intersection: PrimaryIntersection;
     intersection.inverse = dot(rectangle.inverse, at);
 //#if certified
@@ -80,7 +81,8 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let in = steep & (t > error) & !out;
     intersection.error = error;
     // A plane seen edge-on is met far away, if at all.
-    intersection.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error, steep);
+    intersection.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error,
+        steep);
 //#if transparent
     intersection.high = select(T_MAX, t + error, steep);
 //#end
@@ -93,7 +95,8 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
         let margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
-        let margin_error = SECOND_ORDER * position_error + plane.sides_error + PLANE_ROUNDINGS * U * (ray.size + abs(t));
+        let margin_error = SECOND_ORDER * position_error + plane.sides_error
+            + PLANE_ROUNDINGS * U * (ray.size + abs(t));
         out |= in & (margin < -margin_error);
         inside &= margin > margin_error;
     }
@@ -103,7 +106,8 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
 //#else
     let position = (ray.base + t * ray.dir) * plane.axis_mask + plane.fixed_coordinate;
     // A light in the plane is where the ray meets it: at the light, not before.
-    intersection.hit = (t > 0.0) & (position.z <= plane.highest) & (plane.group != range.skip) & ((plane.lights_on_surface & range.light) == 0u);
+    intersection.hit = (t > 0.0) & (position.z <= plane.highest) & (plane.group != range.skip)
+        & ((plane.lights_on_surface & range.light) == 0u);
 //#if rectangle_anywhere
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);

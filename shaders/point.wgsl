@@ -39,7 +39,8 @@ fn locate(ray: Ray, hit: Hit) -> Point {
 //#if bvh
 //#if lit_sphere
     if (objects[hit.object].place & SPHERE_BIT) != 0u {
-        on_sphere(&point, sphere_normal_from(world_spheres[objects[hit.object].place & ~SPHERE_BIT], as_secondary_ray(ray)));
+        on_sphere(&point,
+            sphere_normal_from(world_spheres[objects[hit.object].place & ~SPHERE_BIT], as_secondary_ray(ray)));
     }
 //#end
 //#end
@@ -95,7 +96,8 @@ fn locate_secondary(ray: SecondaryRay, hit: SecondaryHit) -> Point {
     point.object = hit.object;
     point.position = barrier(ray.base + hit.t * ray.dir);
 //#if certified
-    point.error = SECOND_ORDER * (ray.base_error + hit.t * ray.dir_error + hit.error) + POSITION_ROUNDINGS * U * (ray.size + hit.t);
+    point.error = SECOND_ORDER * (ray.base_error + hit.t * ray.dir_error + hit.error)
+        + POSITION_ROUNDINGS * U * (ray.size + hit.t);
 //#end
     complete(&point);
 //#if sphere_beyond

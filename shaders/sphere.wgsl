@@ -28,7 +28,8 @@ fn sphere_hits(sphere: Sphere, ray: Ray) -> PrimaryIntersection {
     let least = barrier1(max(disc, sphere.disc_error));
     let inverse_root = inverseSqrt(least);
     intersection.inverse = sphere.gain * (along + least * inverse_root);
-    intersection.error = sphere.gain * (sphere.along_error + root_error(least, sphere.disc_error, inverse_root)) + ROOT_ROUNDINGS * U * abs(intersection.inverse);
+    intersection.error = sphere.gain * (sphere.along_error + root_error(least, sphere.disc_error, inverse_root))
+        + ROOT_ROUNDINGS * U * abs(intersection.inverse);
 //#else
     intersection.hit = (disc > 0.0) & (along > 0.0);
     intersection.inverse = sphere.gain * (along + sqrt(max(disc, 0.0)));
@@ -63,8 +64,10 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
     let least = barrier1(max(disc, sphere.disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
-    let normal = barrier((vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s);
-    let parts_error = point.form_error + point.center_size * (root_error(least, sphere.disc_error, inverse_root) + ROOT_ROUNDINGS * U * root);
+    let normal =
+        barrier((vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s);
+    let parts_error = point.form_error
+        + point.center_size * (root_error(least, sphere.disc_error, inverse_root) + ROOT_ROUNDINGS * U * root);
     return vec4f(normal, SECOND_ORDER * s * (parts_error + hit.error) + NORMAL_ROUNDINGS * U);
 //#else
     let root = sqrt(max(disc, 0.0));
@@ -97,7 +100,8 @@ fn closest_approach(center: vec3f, radius: f32, size: f32, ray: SecondaryRay) ->
     approach.apart = dot(approach.perpendicular, approach.perpendicular);
 //#if certified
     let far = abs(approach.along) + radius;
-    approach.off = SECOND_ORDER * ray.base_error + U * size + far * ((2.05 + 2.0 * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
+    approach.off = SECOND_ORDER * ray.base_error + U * size
+        + far * ((2.05 + 2.0 * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
 //#end
     return approach;
 }
@@ -108,12 +112,14 @@ fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Int
     let approach = closest_approach(sphere.center, sphere.radius, sphere.size, ray);
     let disc = sphere.radius * sphere.radius - approach.apart;
 //#if certified
-    let disc_error = approach.off * (2.01 * sphere.radius + approach.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
+    let disc_error = approach.off * (2.01 * sphere.radius + approach.off)
+        + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let least = barrier1(max(disc, disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
     let t = approach.along - root;
-    let error = approach.off + root_error(least, disc_error, inverse_root) + ROOT_ROUNDINGS * U * (abs(approach.along) + root);
+    let error = approach.off + root_error(least, disc_error, inverse_root)
+        + ROOT_ROUNDINGS * U * (abs(approach.along) + root);
     intersection.t = t;
     intersection.error = error;
     intersection.low = t - error;
@@ -135,7 +141,8 @@ fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Int
     intersection.t = approach.along - sqrt(max(disc, 0.0));
     // From outside, a light on the sphere is where the ray would enter it: at the light, not before.
     let at_light = ((sphere.lights_on_surface & range.light) != 0u) & (range.limit < approach.along);
-    intersection.hit = (disc > 0.0) & (approach.along > 0.0) & (intersection.t > 0.0) & (sphere.group != range.skip) & !at_light;
+    intersection.hit = (disc > 0.0) & (approach.along > 0.0) & (intersection.t > 0.0) & (sphere.group != range.skip)
+        & !at_light;
 //#end
     return intersection;
 }
@@ -150,7 +157,8 @@ fn sphere_normal_from(sphere: WorldSphere, ray: SecondaryRay) -> vec4f {
     let root = disc * inverse_root;
     let normal = barrier((approach.perpendicular + root * ray.dir) * -sphere.inverse_radius);
 //#if certified
-    let disc_error = approach.off * (2.01 * sqrt(approach.apart) + approach.off) + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
+    let disc_error = approach.off * (2.01 * sqrt(approach.apart) + approach.off)
+        + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
     let error = SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);
     return vec4f(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);

@@ -186,8 +186,10 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
     let size = vec2f(plane.size);
 //#if certified
     // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
-    let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u) | any(size < vec2f(2.0)));
-    let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)), select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
+    let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u)
+        | any(size < vec2f(2.0)));
+    let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)),
+        select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
     var margin = abs(index - edge) - (plane.row_lengths * index_error(point) + plane.errors) + lone;
 //#if tables
     if !all(margin > vec2f(0.0)) {
@@ -244,7 +246,9 @@ fn color_wheel(x_: f32, y_: f32, error: f32) -> Shade {
     let inverse = 1.0 / square;
     let cosine = (x - y) * (x + y) * inverse;
     let sine = 2.0 * x * y * inverse;
-    shade.color = max(vec3f(1.0 + cosine, 1.0 - 0.5 * cosine - HALF_ROOT_3 * sine, 1.0 - 0.5 * cosine + HALF_ROOT_3 * sine), vec3f(0.0));
+    shade.color =
+        max(vec3f(1.0 + cosine, 1.0 - 0.5 * cosine - HALF_ROOT_3 * sine, 1.0 - 0.5 * cosine + HALF_ROOT_3 * sine),
+        vec3f(0.0));
     shade.error = vec3f(3.0 * error * inverseSqrt(square) + WHEEL_ROUNDINGS * U); //~
     return shade;
 }

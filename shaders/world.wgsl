@@ -66,7 +66,8 @@ const NOTHING = 0xffffffffu;
 const T_MAX = 1e30f;
 
 // Takes a hit if it is nearer, or as near and first in the file.
-fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersection, object: u32, group: u32, range: Range) {
+fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersection, object: u32, group: u32,
+    range: Range) {
 //#if certified
     let fresh = group != (*closest).group;
     var hit = intersection.hit & fresh;
@@ -113,12 +114,14 @@ fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
 //#end
 //#if world_plane_loop
     for (var i = 0u; i < WORLD_PLANES; i += 1u) {
-        nearer_secondary(&closest, plane_hits_from(world_planes[i], ray, range), world_planes[i].object, world_planes[i].group, range);
+        nearer_secondary(&closest, plane_hits_from(world_planes[i], ray, range), world_planes[i].object,
+            world_planes[i].group, range);
     }
 //#end
 //#if world_sphere_loop
     for (var i = WORLD_TREE; i < WORLD_SPHERES; i += 1u) {
-        nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object, world_spheres[i].group, range);
+        nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object,
+            world_spheres[i].group, range);
     }
 //#end
 //#if bvh
@@ -131,7 +134,8 @@ fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
             break;
         }
         for (var i = node.first; i < node.first + node.count; i += 1u) {
-            nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object, world_spheres[i].group, range);
+            nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object,
+                world_spheres[i].group, range);
         }
 //#if certified
         // What is truly nearer than the closest is entered before it.

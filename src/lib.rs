@@ -3,13 +3,14 @@
 //! The modules, in the order in which data flows through them:
 //!
 //! ```text
-//! scene text ─ scene::lex ─ scene::parse ─► scene::Scene (plain f64 data)
-//!                                             │
-//!                                          prepare ─► Prepared (what depends on the scene alone, exact, then rounded)
-//!                                             │
-//!            shader::feature_set ─ shader::compose ─ shader::pack ─► gpu::device: dispatch ── sure pixels ─┐
-//!                                             │                │ doubtful ones                  ├─► render: bands ─► image
-//!                                            cpu: the same tracer in Rust ◄── certify ──────────┘       PPM / PNG / EXR
+//! scene text ── scene ─► Scene ── prepare ─► Prepared    decided exactly, then rounded
+//!                                     │
+//!                    ┌────────────────┴────────┐
+//!                 shader: records, WGSL       cpu: the referee, over any number type
+//!                    │                         │
+//!                   gpu ── verdicts ──► certify: doubtful pixels, and some of the sure ones
+//!                                         │
+//!                                      render: bands of rows ─► image: PPM, PNG, EXR
 //! ```
 //!
 //! [`edit`] stands beside the first line: changes on top of a scene, and into its text.

@@ -66,7 +66,8 @@ impl Svg {
         format!(
             "<?xml version='1.0' encoding='UTF-8'?>\n\
              <svg xmlns='http://www.w3.org/2000/svg' width='{width:.0}' height='{height:.0}' \
-             viewBox='0 0 {width:.0} {height:.0}' font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='11'>\n\
+             viewBox='0 0 {width:.0} {height:.0}' \
+         font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='11'>\n\
              <title>{}</title>\n\
              <defs><pattern id='hatch' width='6' height='6' patternUnits='userSpaceOnUse'>\
              <path d='M0,6 L6,0' stroke='#bbb' stroke-width='0.8'/></pattern></defs>\n\

@@ -21,7 +21,8 @@ pub enum GpuError {
     #[error("no GPU adapter found")]
     NoAdapter,
     /// None whose name holds what `--adapter` asks for.
-    #[error("no GPU adapter's name contains `{wanted}`; there {}: {}", if .found.len() == 1 { "is" } else { "are" }, .found.join(", "))]
+    #[error("no GPU adapter's name contains `{wanted}`; there {}: {}",
+        if .found.len() == 1 { "is" } else { "are" }, .found.join(", "))]
     NoSuchAdapter {
         /// What was asked for.
         wanted: String,
@@ -60,7 +61,8 @@ pub enum GpuError {
     },
     /// More objects than the loops of the shader are sure to reach.
     #[error(
-        "the scene has {found} planes and spheres to go through one by one, and a shader's loops are sure to reach {allowed} only"
+        "the scene has {found} planes and spheres to go through one by one, and a shader's loops are sure to \
+         reach {allowed} only"
     )]
     TooMany {
         /// Objects that a loop would ask.
@@ -70,7 +72,8 @@ pub enum GpuError {
     },
     /// The device computes otherwise than the certified path takes for granted.
     #[error(
-        "{adapter} does not compute as WGSL asks, so nothing it says can be certified ({failures}); --precision fast takes it as it comes"
+        "{adapter} does not compute as WGSL asks, so nothing it says can be certified ({failures}); \
+         --precision fast takes it as it comes"
     )]
     Untrusted {
         /// Name of the adapter.

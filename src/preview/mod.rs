@@ -69,7 +69,8 @@ pub enum PreviewError {
     },
     /// The window needs a GPU, a software one at least.
     #[error(
-        "{0}, and a window needs one: {hint}; without, `plumb render SCENE -o picture.png` makes the picture on the CPU",
+        "{0}, and a window needs one: {hint}; without, \
+         `plumb render SCENE -o picture.png` makes the picture on the CPU",
         hint = crate::render::install_hint()
     )]
     NoGpu(GpuError),

@@ -67,7 +67,8 @@ impl std::error::Error for BuildErrors {}
 ///
 /// let mut scene = SceneBuilder::new();
 /// scene.camera("cam", [64, 48], [8.0, 6.0], [4.0, 3.0, 6.0]);
-/// let green = scene.material(Material { name: "green".into(), ambient: [0.0, 5.0, 0.0].into(), ..Material::default() });
+/// let ambient = [0.0, 5.0, 0.0].into();
+/// let green = scene.material(Material { name: "green".into(), ambient, ..Material::default() });
 /// scene.plane("floor", green, [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]);
 /// assert_eq!(scene.build()?.objects.len(), 1);
 /// # Ok::<(), plumb::scene::BuildErrors>(())

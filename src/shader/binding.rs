@@ -122,7 +122,10 @@ const READ: &str = "storage, read";
 const WRITE: &str = "storage, read_write";
 
 macro_rules! bindings {
-    ($($(#[doc = $doc:literal])* binding $number:expr, $name:literal, $access:expr, $wgsl:literal, $what:literal, $holds:expr, $contents:expr;)+) => {
+    ($(
+        $(#[doc = $doc:literal])*
+        binding $number:expr, $name:literal, $access:expr, $wgsl:literal, $what:literal, $holds:expr, $contents:expr;
+    )+) => {
         /// All bindings.
         pub const BINDINGS: &[Binding] = &[$(Binding {
             number: $number,

@@ -174,7 +174,8 @@ fn tile_odd(object: Object, hit: vec3f) -> bool {
         p = along(object, hit);
     }
 //#if prepared
-    let sum = odd(p.x, object.dimension.x, object.begins.x, object.odd.x) + odd(p.y, object.dimension.y, object.begins.y, object.odd.y);
+    let sum = odd(p.x, object.dimension.x, object.begins.x, object.odd.x)
+        + odd(p.y, object.dimension.y, object.begins.y, object.odd.y);
 //#else
     let sum = odd(p.x + 10000.0, object.dimension.x, 0.0, 0.0) + odd(p.y + 10000.0, object.dimension.y, 0.0, 0.0);
 //#end
@@ -184,7 +185,8 @@ fn tile_odd(object: Object, hit: vec3f) -> bool {
 // 0 or 1 a coordinate, as floor(2·p + 1000) is even or odd.
 fn blocks_odd(object: Object, hit: vec3f) -> vec3f {
 //#if prepared
-    return vec3f(odd(hit.x, 0.5, object.begins.x, object.odd.x), odd(hit.y, 0.5, object.begins.y, object.odd.y), odd(hit.z, 0.5, object.begins.z, object.odd.z));
+    return vec3f(odd(hit.x, 0.5, object.begins.x, object.odd.x), odd(hit.y, 0.5, object.begins.y, object.odd.y),
+        odd(hit.z, 0.5, object.begins.z, object.odd.z));
 //#else
     let index = floor(2.0 * hit + 1000.0);
     return index - 2.0 * floor(index / 2.0);
