@@ -116,12 +116,14 @@ pub struct FieldLayout {
     pub wgsl: &'static str,
     /// Bytes before it.
     pub offset: usize,
+    /// Why its numbers may be of any size, if they may.
+    pub any_size: Option<&'static str>,
     /// What it says, line by line.
     pub doc: &'static [&'static str],
 }
 
 /// A record as WGSL and the test of the layout need it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Layout {
     /// Its name in Rust, by which `//#insert struct NAME` asks for it.
     pub name: &'static str,
@@ -133,6 +135,8 @@ pub struct Layout {
     pub fields: &'static [FieldLayout],
     /// Its size in bytes.
     pub size: usize,
+    /// [`Record::fits`] of the record that stands in these bytes.
+    pub fits: fn(&[u8]) -> bool,
 }
 
 impl Layout {
@@ -218,9 +222,11 @@ macro_rules! records {
                         name: stringify!($field),
                         wgsl: <$type as $crate::shader::record::Field>::WGSL,
                         offset: ::std::mem::offset_of!($name, $field),
+                        any_size: records!(@why $($why)?),
                         doc: &[$($field_doc),*],
                     }),+],
                     size: size_of::<$name>(),
+                    fits: |bytes| $crate::shader::record::Record::fits(&::bytemuck::pod_read_unaligned::<Self>(bytes)),
                 };
 
                 fn literals(&self) -> Vec<(&'static str, String)> {
@@ -251,6 +257,8 @@ macro_rules! records {
         pub const LAYOUTS: &[$crate::shader::record::Layout] =
             &[$(<$name as $crate::shader::record::Record>::LAYOUT),+];
     };
+    (@why) => { None };
+    (@why $why:literal) => { Some($why) };
     (@fits $field:expr) => { $crate::shader::record::Field::fits(&$field) };
     (@fits $field:expr, $why:literal) => { true };
 }

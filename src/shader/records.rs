@@ -341,3 +341,55 @@ pub struct PackedCamera {
     /// κ ≥ 1 (docs/NUMERICS.md): the terms that W·W is a sum of, over W·W.
     pub condition: f32,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::bounds::LARGEST;
+    use crate::shader::record::{FieldLayout, Layout};
+
+    /// How many f32 stand in a field, those of a record within it not counted: that is tested by itself.
+    fn floats(field: &FieldLayout) -> usize {
+        match field.wgsl {
+            "f32" => 1,
+            "vec2f" => 2,
+            "vec3f" => 3,
+            "vec4f" => 4,
+            _ => 0,
+        }
+    }
+
+    /// Whether the record fits that is 0 but for one number.
+    fn fits_with(layout: &Layout, offset: usize, value: f32) -> bool {
+        let mut bytes = vec![0; layout.size];
+        bytes[offset..offset + 4].copy_from_slice(&value.to_le_bytes());
+        (layout.fits)(&bytes)
+    }
+
+    /// What a field holds is checked unless the field says why it need not be: none can be forgotten.
+    #[test]
+    fn a_large_number_in_any_field_is_noticed() {
+        let largest = LARGEST as f32;
+        let (mut checked, mut free) = (0, 0);
+        for layout in LAYOUTS {
+            for field in layout.fields {
+                for offset in (0..floats(field)).map(|i| field.offset + 4 * i) {
+                    assert!(fits_with(layout, offset, largest));
+                    for value in [largest.next_up(), -f32::MAX, f32::INFINITY, f32::NAN] {
+                        let fits = fits_with(layout, offset, value);
+                        assert_eq!(
+                            fits,
+                            field.any_size.is_some(),
+                            "{}.{}",
+                            layout.name,
+                            field.name
+                        );
+                    }
+                    checked += 1;
+                    free += usize::from(field.any_size.is_some());
+                }
+            }
+        }
+        assert!(checked > 150 && free < 20, "{checked} {free}");
+    }
+}
