@@ -20,6 +20,17 @@ struct PathPoint {
     t: f32,
     t_error: f32, //~
 }
+//#if certified
+
+// Whether every channel of a weight is of ordinary size, or 0 because a factor of it is 0: not because f32 could not
+// hold it. That is asked of exponents, since a compiler may take it for granted that no number is too large for f32.
+fn ordinary(before: vec3f, factor: vec3f, weight: vec3f) -> bool {
+    let exponent = (bitcast<vec3u>(weight) >> vec3u(23u)) & vec3u(255u);
+    let least = u32(WEIGHT_LEAST);
+    let inside = exponent - vec3u(least) <= vec3u(u32(WEIGHT_MOST) - least);
+    return all(inside | (before == vec3f(0.0)) | (factor == vec3f(0.0)));
+}
+//#end
 //#if stack
 
 // The mirror rays that wait while another ray is followed. (Not a variable of the function: that made one driver's code
@@ -48,8 +59,9 @@ fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
     mirror.ray.base = point.position;
     mirror.total = ended.total;
     mirror.last = point.group;
-    mirror.weight = ended.weight * specular;
 //#if certified
+    mirror.weight = barrier(ended.weight * specular);
+    doubt |= !ordinary(ended.weight, specular, mirror.weight);
     mirror.ray.dir = barrier(2.0 * along * point.normal + ended.ray.dir);
     mirror.ray.dir_error = SECOND_ORDER * ended.ray.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
     mirror.ray.base_error = point.error;
@@ -57,6 +69,7 @@ fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
     mirror.total_error = ended.total_error;
     mirror.weight_error = ended.weight_error + 2.0 * U;
 //#else
+    mirror.weight = ended.weight * specular;
     mirror.ray.dir = 2.0 * along * point.normal + ended.ray.dir;
 //#end
     return mirror;
@@ -75,7 +88,13 @@ fn through_branch(ended: Branch, point: Point, transparency: f32) -> Branch {
     through.weight_error = ended.weight_error + 5.0 * U;
 //#end
     if transparency > 0.0 {
-        through.weight *= materials[tile_material(point)].tint * transparency;
+        let factor = materials[tile_material(point)].tint * transparency;
+//#if certified
+        through.weight = barrier(ended.weight * factor);
+        doubt |= !ordinary(ended.weight, factor, through.weight);
+//#else
+        through.weight = ended.weight * factor;
+//#end
     } else {
         through.weight = vec3f(0.0);
     }
@@ -106,26 +125,38 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
         branch.total_error += at.t_error + U * branch.total; //~
         add_shade(traced, branch, material.kept, lit);
 //#if certified
-        if doubt | (branch.total_error > 0.01 * branch.total) {
-            (*traced).verdict = UNDECIDED;
-            break;
-        }
-        let short = MAX_PATH - branch.total;
-        let goes_on = any(branch.weight * material.specular > vec3f(0.0)) | (material.transparency > 0.0);
-        if goes_on & !(abs(short) > branch.total_error + 2.0 * U * MAX_PATH) {
-            // Whether the path ends here is not certain.
+        if doubt | (branch.total_error > 0.01 * branch.total) | (branch.total < TOTAL_LEAST) {
             (*traced).verdict = UNDECIDED;
             break;
         }
 //#end
         // The rays that go on from here.
+//#if mirror
+        let mirror = mirror_branch(branch, at.point, material.specular);
+        var mirrors = any(mirror.weight > vec3f(0.0));
+//#else
+        let mirrors = false;
+//#end
+//#if transparent
+        let through = through_branch(branch, at.point, material.transparency);
+        var passes = any(through.weight > vec3f(0.0));
+//#else
+        let passes = false;
+//#end
+//#if certified
+        let short = MAX_PATH - branch.total;
+        let short_sure = abs(short) > branch.total_error + 2.0 * U * MAX_PATH;
+        if doubt | ((mirrors | passes) & !short_sure) {
+            // Whether the path ends here is not certain, or a weight is not known.
+            (*traced).verdict = UNDECIDED;
+            break;
+        }
+//#end
         let within = branch.total <= MAX_PATH;
 //#if stack
         // What goes through is followed at once; the mirror image waits if both go on.
-        let mirror = mirror_branch(branch, at.point, material.specular);
-        let through = through_branch(branch, at.point, material.transparency);
-        let mirrors = any(mirror.weight > vec3f(0.0)) & within;
-        let passes = any(through.weight > vec3f(0.0)) & within;
+        mirrors &= within;
+        passes &= within;
         if mirrors & passes {
             if waiting == STACK {
                 (*traced).verdict = UNDECIDED;
@@ -171,14 +202,14 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
             follows = false;
         }
 //#else
-//#if mirror
-        branch = mirror_branch(branch, at.point, material.specular);
-//#else
-        branch = through_branch(branch, at.point, material.transparency);
-//#end
-        if !within | !any(branch.weight > vec3f(0.0)) {
+        if !within | !(mirrors | passes) {
             break;
         }
+//#if mirror
+        branch = mirror;
+//#else
+        branch = through;
+//#end
         if rays == MAX_RAYS {
             (*traced).verdict = UNDECIDED;
             break;

@@ -46,9 +46,9 @@ fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
             return Shadow(vec3f(0.0), false);
 //#end
         }
-        // The product is kept above 0, so that it is never flushed: the glint shines through however little else does.
-        transmittance = max(transmittance * (materials[tile_material(blocker)].tint * material.transparency),
-            vec3f(0x1p-120f));
+        // Where the product is flushed little is lost (FLUSHED), and `open` says that the glint shines through all the
+        // same.
+        transmittance *= materials[tile_material(blocker)].tint * material.transparency;
         roundings += 4.0; //~
         range.skip = blocker.group;
         range.beyond = hit.t;
@@ -112,7 +112,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let c = dot(d, point.normal);
 //#if certified
     let toward_error = point.error + U * (light.size + 2.0 * distance);
-    if !(distance > 4.0 * toward_error) {
+    if !(distance > 4.0 * toward_error) | (inverse > LIGHT_NEAREST) {
         doubt = true;
         return shade;
     }
@@ -177,7 +177,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
         doubt |= !near | (material.power == 0u);
         if cosine > -cosine_error {
             // The upper end of what the cosine may be, and all that lies below it as error.
-            let upper = min(cosine + cosine_error, 1.0);
+            let upper = clamp(cosine + cosine_error, TINY_COSINE, 1.0);
             let glint = material.specular * light.emissivity * power(upper, material.power);
             shade.color += glint;
             let n = f32(material.power);

@@ -116,7 +116,9 @@ fn ray_trace(ray: Ray) -> Traced {
     let share = CAMERA_GAIN / t;
     traced.color = share * lit.color;
     traced.error = share * (lit.error + lit.color * (SECOND_ORDER * t_error / t + 12.0 * U)); //~
+    doubt |= t < TOTAL_LEAST; //~
 //#end
+    traced.error += FLUSHED; //~
     if steps > STEPS_LIMIT {
         traced.verdict = UNDECIDED;
     }

@@ -38,6 +38,14 @@ named! {
     ROOT_FAR_FROM = 4.0;
     /// Roundings of the position of a primary hit, for a unit of its distance.
     HIT_ROUNDINGS = 5.0;
+    /// The least and the largest biased exponent that a ray's weight may have in f32: it is from 2⁻⁸⁶ up to 2⁵.
+    WEIGHT_LEAST = 127.0 - 86.0;
+    /// See `WEIGHT_LEAST`.
+    WEIGHT_MOST = 127.0 + 4.0;
+    /// What products that f32 flushes may take from a lit pixel's value, where 255 is a full byte.
+    FLUSHED = 1.0 / (1_u64 << 26) as f64;
+    /// The cosine of a glint counts for at least this: a number that is divided by.
+    TINY_COSINE = 1.0 / (1_u64 << 40) as f64;
     /// Roundings of a dot product with a plane, of its sum with an offset.
     PLANE_ROUNDINGS = 6.0;
     /// Roundings of base + t·dir.
@@ -193,6 +201,15 @@ pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     form[axis] = sign as f32;
     form[2] = (-sign * border) as f32;
     Some((form, (screen.lattice / 8.0) as f32))
+}
+
+/// No factor of a colour may be nearer to 0 than this, unless it is 0: then products of a few of them neither vanish
+/// nor lose their relative accuracy below f32's normal numbers.
+pub const SMALLEST: f64 = 1.0 / LARGEST;
+
+/// Whether a factor is 0, or far enough from it.
+pub fn not_tiny(value: f32) -> bool {
+    value == 0.0 || f64::from(value.abs()) >= SMALLEST
 }
 
 /// Whether f32 can hold the number with room to spare; 0 is as good as any small number.

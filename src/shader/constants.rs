@@ -156,6 +156,12 @@ fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
         format!("const DARK = {};", literal(packed.dark)),
         line("BRIGHT", brightest),
     ]);
+    if features.contains(&Feature::Lit) {
+        lines.extend([
+            line("LIGHT_NEAREST", packed.light_nearest()),
+            line("TOTAL_LEAST", packed.total_least()),
+        ]);
+    }
     if features.contains(&Feature::Bvh) {
         lines.push(line("BVH_SIZE", f64::from(packed.tree_size)));
     }

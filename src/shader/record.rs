@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::bounds::fits;
+use super::bounds::{fits, not_tiny};
 use super::literal::{literal, vector};
 
 /// A type that a field of a record may have.
@@ -18,6 +18,11 @@ pub trait Field {
 
     /// Whether every f32 in it is of moderate size: see [`fits`].
     fn fits(&self) -> bool;
+
+    /// Whether every f32 in it is 0 or not tiny: see [`not_tiny`].
+    fn not_tiny(&self) -> bool {
+        true
+    }
 }
 
 macro_rules! pads {
@@ -57,6 +62,10 @@ impl Field for f32 {
     fn fits(&self) -> bool {
         fits(*self)
     }
+
+    fn not_tiny(&self) -> bool {
+        not_tiny(*self)
+    }
 }
 
 impl Field for u32 {
@@ -82,6 +91,10 @@ macro_rules! vector_fields {
 
             fn fits(&self) -> bool {
                 self.iter().all(Field::fits)
+            }
+
+            fn not_tiny(&self) -> bool {
+                self.iter().all(Field::not_tiny)
             }
         }
     )+};
@@ -118,6 +131,8 @@ pub struct FieldLayout {
     pub offset: usize,
     /// Why its numbers may be of any size, if they may.
     pub any_size: Option<&'static str>,
+    /// Why its numbers must not be tiny, if they must not.
+    pub factor: Option<&'static str>,
     /// What it says, line by line.
     pub doc: &'static [&'static str],
 }
@@ -189,7 +204,8 @@ pub trait Record: Pod + Debug {
 }
 
 /// Makes records of lists of fields: `NAME as "WGSL name" { … }`. A field whose numbers may be of any size says why in
-/// `#[any_size = "…"]`; all others are checked before error bounds are relied on.
+/// `#[any_size = "…"]`; all others are checked before error bounds are relied on. A field whose numbers must be 0 or
+/// not tiny says why in `#[factor = "…"]`.
 macro_rules! records {
     ($(
         $(#[doc = $doc:literal])+
@@ -197,6 +213,7 @@ macro_rules! records {
             $(
                 $(#[doc = $field_doc:literal])*
                 $(#[any_size = $why:literal])?
+                $(#[factor = $factor:literal])?
                 $field:ident: $type:ty,
             )+
         }
@@ -209,6 +226,7 @@ macro_rules! records {
                 $(
                     $(#[doc = $field_doc])*
                     $(#[doc = concat!("\n\nOf any size: ", $why, ".")])?
+                    $(#[doc = concat!("\n\nNot tiny: ", $factor, ".")])?
                     pub $field: $type,
                 )+
             }
@@ -223,6 +241,7 @@ macro_rules! records {
                         wgsl: <$type as $crate::shader::record::Field>::WGSL,
                         offset: ::std::mem::offset_of!($name, $field),
                         any_size: records!(@why $($why)?),
+                        factor: records!(@why $($factor)?),
                         doc: &[$($field_doc),*],
                     }),+],
                     size: size_of::<$name>(),
@@ -236,7 +255,7 @@ macro_rules! records {
                 }
 
                 fn fits(&self) -> bool {
-                    [$(records!(@fits self.$field $(, $why)?)),+].into_iter().all(|fits| fits)
+                    [$(records!(@fits self.$field, [$($why)?], [$($factor)?])),+].into_iter().all(|fits| fits)
                 }
             }
 
@@ -259,7 +278,10 @@ macro_rules! records {
     };
     (@why) => { None };
     (@why $why:literal) => { Some($why) };
-    (@fits $field:expr) => { $crate::shader::record::Field::fits(&$field) };
-    (@fits $field:expr, $why:literal) => { true };
+    (@fits $field:expr, [], []) => { $crate::shader::record::Field::fits(&$field) };
+    (@fits $field:expr, [$why:literal], []) => { true };
+    (@fits $field:expr, [], [$factor:literal]) => {
+        $crate::shader::record::Field::fits(&$field) && $crate::shader::record::Field::not_tiny(&$field)
+    };
 }
 pub(crate) use records;

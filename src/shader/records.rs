@@ -6,7 +6,7 @@ records! {
     /// An object of a scene without lights.
     Object as "Object" {
         /// Ambient reflectivity of the material.
-        #[any_size = "the darkness that follows from it is checked in its place"]
+        #[factor = "a colour is a product of it"]
         ambient: [f32; 3],
         /// Its kind of surface, `KIND_…`, in the low byte, the index of its record above.
         kind: u32,
@@ -138,7 +138,7 @@ records! {
         /// The same for the second direction.
         fraction_1: f32,
         /// Ambient reflectivity of the other material.
-        #[any_size = "the darkness that follows from it is checked in its place"]
+        #[factor = "a colour is a product of it"]
         altmaterial: [f32; 3],
         /// Index of the other material.
         altindex: u32,
@@ -239,21 +239,27 @@ records! {
     /// A material of a scene with lights.
     Material as "Material" {
         /// Ambient reflectivity.
+        #[factor = "colours and weights of rays are products of it"]
         ambient: [f32; 3],
         /// Share of light that goes through.
+        #[factor = "colours and weights of rays are products of it"]
         transparency: f32,
         /// Diffuse reflectivity.
+        #[factor = "colours and weights of rays are products of it"]
         diffuse: [f32; 3],
         /// Exponent of the glint, 0 for none.
         #[any_size = "it is only compared with 0 where pixels are certified"]
         shininess: f32,
         /// Specular reflectivity.
+        #[factor = "colours and weights of rays are products of it"]
         specular: [f32; 3],
         /// The exponent if it is a whole number from 1 to 1023, else 0.
         power: u32,
         /// What tints light that goes through.
+        #[factor = "colours and weights of rays are products of it"]
         tint: [f32; 3],
         /// 1 − transparency.
+        #[factor = "colours and weights of rays are products of it"]
         kept: f32,
     }
 
@@ -264,6 +270,7 @@ records! {
         /// Cosine of the half angle; −2 for a light without a cone.
         cosine: f32,
         /// How bright it is.
+        #[factor = "colours are products of it"]
         emissivity: [f32; 3],
         /// Length of `location`.
         size: f32,
@@ -315,6 +322,7 @@ records! {
         /// From the viewpoint.
         center: [f32; 3],
         /// Its radius.
+        #[factor = "its square must not vanish"]
         radius: f32,
         /// Number of the surface.
         group: u32,
@@ -345,7 +353,7 @@ pub struct PackedCamera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::bounds::LARGEST;
+    use crate::shader::bounds::{LARGEST, SMALLEST};
     use crate::shader::record::{FieldLayout, Layout};
 
     /// How many f32 stand in a field, those of a record within it not counted: that is tested by itself.
@@ -364,6 +372,32 @@ mod tests {
         let mut bytes = vec![0; layout.size];
         bytes[offset..offset + 4].copy_from_slice(&value.to_le_bytes());
         (layout.fits)(&bytes)
+    }
+
+    /// A factor that f32 might flush is noticed, and nothing else need not be tiny.
+    #[test]
+    fn a_tiny_factor_is_noticed() {
+        let smallest = SMALLEST as f32;
+        let mut factors = 0;
+        for layout in LAYOUTS {
+            for field in layout.fields {
+                for offset in (0..floats(field)).map(|i| field.offset + 4 * i) {
+                    assert!(fits_with(layout, offset, smallest));
+                    for value in [smallest.next_down(), f32::MIN_POSITIVE, 1e-45] {
+                        let fits = fits_with(layout, offset, value);
+                        assert_eq!(
+                            fits,
+                            field.factor.is_none(),
+                            "{}.{}",
+                            layout.name,
+                            field.name
+                        );
+                    }
+                    factors += usize::from(field.factor.is_some());
+                }
+            }
+        }
+        assert!(factors > 20, "{factors}");
     }
 
     /// What a field holds is checked unless the field says why it need not be: none can be forgotten.

@@ -1,6 +1,6 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
-use super::{Packed, f32x3};
+use super::{Packed, f32x3, factor, factors};
 use crate::prepare::extent::Extent;
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
@@ -78,26 +78,17 @@ impl Lit {
     }
 }
 
-/// In f32; a number that is not 0 stays so.
-fn positive(value: f64) -> f32 {
-    if value > 0.0 {
-        (value as f32).max(f32::MIN_POSITIVE)
-    } else {
-        0.0
-    }
-}
-
 fn material(material: &prepare::Material<Bounded>) -> Material {
     Material {
-        ambient: f32x3(material.ambient),
-        transparency: positive(material.transparency.value),
-        diffuse: f32x3(material.diffuse),
+        ambient: factors(material.ambient),
+        transparency: factor(material.transparency.value),
+        diffuse: factors(material.diffuse),
         shininess: if material.mirror {
-            positive(material.shininess)
+            factor(material.shininess)
         } else {
             0.0
         },
-        specular: f32x3(material.specular),
+        specular: factors(material.specular),
         power: if material.mirror
             && material.shininess.fract() == 0.0
             && material.shininess < 1024.0
@@ -106,8 +97,8 @@ fn material(material: &prepare::Material<Bounded>) -> Material {
         } else {
             0
         },
-        tint: f32x3(material.tint),
-        kept: (Bounded::exact(1.0) - material.transparency).value as f32,
+        tint: factors(material.tint),
+        kept: factor((Bounded::exact(1.0) - material.transparency).value),
     }
 }
 
@@ -117,7 +108,7 @@ fn light(light: &prepare::Light<Bounded>) -> Light {
     Light {
         location: f32x3(light.location),
         cosine: cosine.value as f32,
-        emissivity: f32x3(light.emissivity),
+        emissivity: factors(light.emissivity),
         size: size(light.location),
         axis: f32x3(axis),
         pad: Default::default(),
@@ -180,7 +171,7 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
 fn world_sphere(world: &World<Bounded>, sphere: &prepare::WorldSphere<Bounded>) -> WorldSphere {
     WorldSphere {
         center: f32x3(sphere.center),
-        radius: sphere.radius.value as f32,
+        radius: factor(sphere.radius.value),
         group: world.groups[sphere.object],
         object: sphere.object as u32,
         lights_on_surface: bits(&sphere.lights_on_surface),

@@ -319,6 +319,19 @@ fn node_size(node: &BvhNode) -> f64 {
     corner(0) + corner(1) + corner(2)
 }
 
+/// A factor of a colour in f32: one that is not 0 stays so, so that the check of its size sees it.
+pub(super) fn factor(value: f64) -> f32 {
+    if value > 0.0 {
+        (value as f32).max(f32::MIN_POSITIVE)
+    } else {
+        0.0
+    }
+}
+
+pub(super) fn factors(v: V3<Bounded>) -> [f32; 3] {
+    [v.x, v.y, v.z].map(|v| factor(v.value))
+}
+
 pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
     [v.x.value as f32, v.y.value as f32, v.z.value as f32]
 }
@@ -348,7 +361,7 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
 
 fn object(ambient: V3<Bounded>) -> Object {
     Object {
-        ambient: f32x3(ambient),
+        ambient: factors(ambient),
         kind: 0,
     }
 }

@@ -1,35 +1,97 @@
-//! The proof that no number on the GPU overflows: all numbers of all records are of moderate size, but for those that
-//! say in [`records`](crate::shader::records) why they need not be (docs/NUMERICS.md, section 9, "Ranges").
+//! The proof that no number on the GPU leaves f32's range: all numbers of all records are of moderate size, but for
+//! those that say in [`records`](crate::shader::records) why they need not be; and what products of them a shader must
+//! not follow (docs/NUMERICS.md, section 9, "Ranges").
 
-use super::Packed;
+use super::{Lit, Packed};
 use crate::shader::binding::BINDINGS;
-use crate::shader::bounds::LARGEST;
+use crate::shader::bounds::{LARGEST, WEIGHT_MOST};
 use crate::shader::record::Record as _;
 
+/// Products of a light's numbers, and those of a ray's weight with what a path's length makes of it, stay below 2 to
+/// the power of this.
+const PRODUCTS: f64 = 32.0;
+
+/// Weights that are followed are below 2 to the power of this.
+const WEIGHT_GROWTH: f64 = WEIGHT_MOST - 127.0 + 1.0;
+
+/// The power of two that a number is below, at least 0: what it can add to a product's exponent.
+fn grows(number: f64) -> f64 {
+    number.log2().ceil().max(0.0)
+}
+
+/// The largest of numbers that are not negative.
+fn largest<'a>(colors: impl Iterator<Item = &'a [f32; 3]>) -> f64 {
+    f64::from(colors.flatten().copied().fold(0.0, f32::max))
+}
+
+impl Lit {
+    /// What diffuse and specular reflectivities and emissivities can add to exponents.
+    fn growth(&self) -> [f64; 3] {
+        [
+            grows(largest(self.materials.iter().map(|m| &m.diffuse))),
+            grows(largest(self.materials.iter().map(|m| &m.specular))),
+            grows(largest(self.lights.iter().map(|l| &l.emissivity))),
+        ]
+    }
+
+    /// The largest ambient reflectivity, as it can add to an exponent.
+    fn ambient_growth(&self, packed: &Packed) -> f64 {
+        let ambient = largest(self.materials.iter().map(|m| &m.ambient));
+        let kinds = packed.kinds.iter();
+        grows(
+            kinds
+                .map(|kind| kind.brightest(ambient))
+                .fold(ambient, f64::max),
+        )
+    }
+}
+
 impl Packed {
-    /// Why no bound is to be relied on: a number so large that products of such numbers might overflow.
+    /// Lights nearer than the inverse of this are left to the CPU, so that diffuse ∘ emissivity / distance stays below
+    /// 2^PRODUCTS whatever is multiplied first.
+    pub(crate) fn light_nearest(&self) -> f64 {
+        let unit = f64::from(self.camera.numbers.unit);
+        let [diffuse, _, emissivity] = self.lit.as_ref().map_or([0.0; 3], Lit::growth);
+        2.0_f64.powf(PRODUCTS - diffuse - emissivity - grows(unit))
+    }
+
+    /// Paths shorter than this are left to the CPU, so that weight · gain / path stays below 2^PRODUCTS.
+    pub(crate) fn total_least(&self) -> f64 {
+        2.0_f64.powf(WEIGHT_GROWTH + grows(f64::from(self.camera.numbers.gain)) - PRODUCTS)
+    }
+
+    /// Why no bound is to be relied on: a number so large that products of such numbers might overflow, or so small
+    /// that they might vanish.
     pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
         let camera = &self.camera.numbers;
         let far = f64::from(self.camera.condition) <= 64.0
             && camera.fits()
             && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
             && f64::from(camera.gain) >= 1.0 / LARGEST
-            && f64::from(self.dark) > 1.0 / LARGEST / LARGEST;
+            && f64::from(self.dark) > 2.0_f64.powi(-60);
         if !far {
             return Some("the camera's numbers are too large or too small");
         }
-        if self
-            .lit
-            .as_ref()
-            .is_some_and(|lit| lit.unnumbered_light_on_surface)
-        {
-            return Some("a light after the first 32 lies on a surface");
+        if let Some(lit) = &self.lit {
+            if lit.unnumbered_light_on_surface {
+                return Some("a light after the first 32 lies on a surface");
+            }
+            let [diffuse, specular, emissivity] = lit.growth();
+            let moderate = specular + emissivity <= PRODUCTS
+                && diffuse + emissivity + grows(f64::from(camera.unit)) <= PRODUCTS
+                && WEIGHT_GROWTH + grows(f64::from(camera.gain)) <= PRODUCTS
+                && lit.ambient_growth(self) <= PRODUCTS;
+            if !moderate {
+                return Some(
+                    "materials and lights are too bright together, or the scene is too small,",
+                );
+            }
         }
         // Whatever may be uploaded or written as literals, whether this shader has it or not.
         let contents = BINDINGS.iter().filter_map(|binding| binding.contents);
         let fit = contents
             .map(|contents| contents(self))
             .all(|elements| elements.fit());
-        (!fit).then_some("an object's or light's numbers are too large")
+        (!fit).then_some("an object's or light's numbers are too large or too small")
     }
 }

@@ -1,6 +1,6 @@
 //! The records of what modulates an object's material: tiles, procedural planes, textures.
 
-use super::f32x3;
+use super::{f32x3, factors};
 use crate::prepare::Prepared;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::real::{Bounded, Real, V3};
@@ -40,7 +40,7 @@ pub(super) fn tiled_plane(
         fraction_0: tiled.index[0].fraction.value as f32,
         row_1: f32x3(rows[1]),
         fraction_1: tiled.index[1].fraction.value as f32,
-        altmaterial: f32x3(scene.palette[other].ambient),
+        altmaterial: factors(scene.palette[other].ambient),
         altindex: other as u32,
         parity: (tiled.index[0].parity + tiled.index[1].parity + flip) as f32,
         pad_0: Default::default(),

@@ -13,6 +13,7 @@ mod pictures;
 mod primary;
 mod support;
 mod surfaces;
+mod weights;
 mod world;
 
 use plumb::gpu::device::Gpu;
@@ -122,6 +123,11 @@ fn at_a_hit_point() {
         exact.judge(DECIDED, TIGHT);
         off.judge(DECIDED, TIGHT_OFF);
     }
+}
+
+#[test]
+fn weights_of_ordinary_size_are_followed() {
+    weights::are_followed(&support::open(), &World::many().wgsl);
 }
 
 /// What need not be noticed: without it the other terms of its sum still cover the roundings of drivers that round to
