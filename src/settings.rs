@@ -99,15 +99,18 @@ impl Settings {
         self.precision == Precision::Certified && !self.values
     }
 
-    /// The limits of a sample: where the values themselves are wanted, those above 1 count too.
+    /// The limits of a sample: where the values themselves are wanted, those above 1 count too, and the
+    /// least ray does.
     pub fn sample_limits(&self) -> Limits {
-        let enough = if self.values {
-            f64::INFINITY
-        } else {
-            f64::from(self.samples)
-        };
+        if self.values {
+            return Limits {
+                enough: f64::INFINITY,
+                faint: 0.0,
+                ..self.limits
+            };
+        }
         Limits {
-            enough,
+            enough: f64::from(self.samples),
             ..self.limits
         }
     }
@@ -195,7 +198,14 @@ pub struct Limits {
     pub max_rays: u32,
     /// A sample this bright in all channels makes its pixel white whatever else it brings: rays take no light away.
     pub enough: f64,
+    /// A ray that can bring no more than this to its sample, with all rays that it leaves, is not followed: its bytes
+    /// are those that they are with it or without. 0 to follow every ray.
+    pub faint: f64,
 }
+
+/// What the rays of a sample may bring together that are too faint to be followed, 2¹⁷ at most, is a thousandth of a
+/// byte.
+const FAINT: f64 = 1.0 / (1_u64 << 36) as f64;
 
 impl Default for Limits {
     fn default() -> Self {
@@ -203,6 +213,7 @@ impl Default for Limits {
             max_path: 20.0,
             max_rays: 1 << 16,
             enough: 1.0,
+            faint: FAINT,
         }
     }
 }

@@ -133,6 +133,7 @@ pub fn rays(scene: &Scene, settings: &Settings) -> Rays {
     let prepared = Prepared::<f64>::new(scene, settings.view());
     let limits = Limits {
         enough: f64::INFINITY,
+        faint: 0.0,
         ..settings.limits
     };
     let rows = some_rows(scene, MOST_COUNTED);

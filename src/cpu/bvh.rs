@@ -3,10 +3,13 @@
 use crate::prepare::bvh::{Bvh, SLACK};
 use crate::real::{Bounded, Real, Undecided, V3};
 
+/// So many spheres are asked without a tree where that says nothing.
+const FEW: usize = 4096;
+
 /// The greatest f64 that a number may be: how far hits matter.
 pub fn at_most<R: Real>(number: R) -> f64 {
     let Bounded { value, error } = number.enclosure();
-    let most = (value + error) * SLACK;
+    let most = (value + error * Bounded::GROW) * SLACK;
     if most.is_nan() { f64::INFINITY } else { most }
 }
 
@@ -16,7 +19,7 @@ pub fn at_most<R: Real>(number: R) -> f64 {
 /// The boxes are asked in f64, whatever the tracer's number type is, and the ray is known as well as that type knows
 /// it: a point at s on it is off by no more than base's error and s times that of `dir`. All that is in the tree is
 /// nearer than a distance that its root tells, so the boxes are widened by what that can be; if it is more than it is
-/// worth, the ray is `Undecided`.
+/// worth, the ray is `Undecided`, unless all spheres can be asked.
 pub fn bvh_hits<R: Real>(
     bvh: &Bvh,
     base: V3<R>,
@@ -34,11 +37,13 @@ pub fn bvh_hits<R: Real>(
     for (slack, (base, dir)) in slack.iter_mut().zip(base.iter().zip(&dir)) {
         // A component that is replaced below is off by twice as much as its replacement.
         *slack = 1.01 * (base.error + farthest / longest * (dir.error + 2e-30));
-        // A NaN fails this comparison too, and so leaves the ray undecided.
-        let narrow = *slack < 1e-3 * farthest;
-        if !narrow {
+    }
+    // A NaN fails this comparison too, and so leaves the ray undecided.
+    if !slack.iter().all(|slack| *slack < 1e-3 * farthest) {
+        if bvh.len > FEW {
             return Err(Undecided);
         }
+        return (0..bvh.len).try_for_each(|sphere| test(sphere).map(|_| ()));
     }
     // A zero component becomes tiny: the ray stays in its slab or out of it.
     let inverse = dir.map(|c| {

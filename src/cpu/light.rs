@@ -66,7 +66,7 @@ pub fn light_term<R: Real>(
     if light_in_plane || !across.positive()? {
         return Ok(Lit::FacesAway);
     }
-    if !in_cone(light, d)? {
+    if !in_cone(light, toward, d)? {
         return Ok(Lit::OutsideCone);
     }
     let transmittance = match shadow(scene, world, point, d, Toward { number, distance })? {
@@ -87,12 +87,29 @@ pub fn light_term<R: Real>(
     })
 }
 
-/// Whether a point is in the light's cone; `d` is the unit vector from the point to the light.
-fn in_cone<R: Real>(light: &Light<R>, d: V3<R>) -> Result<bool, Undecided> {
-    match &light.cone {
-        None => Ok(true),
-        Some((axis, cosine)) => (-axis.dot(d) - *cosine).positive(),
+/// Whether a point is in the light's cone; `toward` is the vector from the point to the light, and `d` that of unit
+/// length.
+fn in_cone<R: Real>(light: &Light<R>, toward: V3<R>, d: V3<R>) -> Result<bool, Undecided> {
+    let Some((axis, cosine)) = light.cone else {
+        return Ok(true);
+    };
+    let along = -axis.dot(d);
+    let Some(narrow) = light.narrow else {
+        return (along - cosine).positive();
+    };
+    // The cosine of the cone is next to 1, and so is that of the points where it matters. With φ the angle at the
+    // light, 1 − cos φ is compared instead, as sin² φ/(1 + cos φ), in which nothing cancels.
+    if !along.positive()? {
+        return Ok(false);
     }
+    let across = axis.cross(toward);
+    let square = across.dot(across);
+    // On the axis, which is in every cone, this is 0, and that is never told from a small number by digits.
+    if square.sign() == Ok(Ordering::Equal) {
+        return Ok(true);
+    }
+    let off = square / (toward.dot(toward) * (R::exact(1.0) + along));
+    Ok((off - narrow).sign()? == Ordering::Less)
 }
 
 /// The transmittance from the point to the light along `d`, or the object that keeps it off.

@@ -19,6 +19,10 @@ pub struct Branch<R> {
     pub weight: V3<R>,
     /// In which channels that is not 0.
     pub counts: [bool; 3],
+    /// What it and all that it leaves may bring, by channels.
+    pub most: [f64; 3],
+    /// How many rays on the same way it stands for.
+    pub rays: u32,
     /// Number of the ray that it came from; its own for the first.
     pub parent: u32,
     /// How it left.
@@ -45,12 +49,14 @@ pub enum Unmet {
     TooLong,
     /// It was not followed, as its weight is zero.
     Weightless,
+    /// It was not followed, as nothing that it may bring can count.
+    Faint,
 }
 
 /// Sees how a colour comes about: `plumb probe` listens, rendering does not.
 ///
-/// Rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then the
-/// mirror image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
+/// In f64 rays come depth first: a ray, then the one that goes on through the surface with all that it leads to, then
+/// the mirror image. Of a ray that meets something `met` is told, then `light` for each light, then `adds`.
 pub trait TraceObserver<R> {
     /// `ray` met nothing; had it a number, that is `number`.
     fn missed(&mut self, number: u32, ray: &Branch<R>, why: Unmet) {

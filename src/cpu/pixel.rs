@@ -1,4 +1,4 @@
-//! A pixel from its samples: the notes' `make_pixel`, in the number types that it takes to be sure of it.
+//! A pixel in the number types that it takes to be sure of it; `sample` makes it in one of them.
 //!
 //! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that
 //! are exact in the end.
@@ -12,63 +12,15 @@ use glam::DVec3;
 
 use super::camera::{camera_getdir, camera_setpix, inverse_distance};
 use super::hit_point::hit_point;
-use super::trace::{Fault, Limits, Unobserved, find_closest_object, ray_trace};
+use super::sample::{Value, color, make_pixel, mean};
+use super::trace::{Fault, Limits, find_closest_object};
 use crate::frame::{Decided, DecidedBy, Part, PixelFault};
-use crate::jitter::{self, Sampling};
+use crate::jitter::Sampling;
 use crate::prepare::on_demand::OnDemandSources;
 use crate::prepare::{Prepared, ViewParameters};
+use crate::real::rational::two_to;
 use crate::real::{Bounded, Effort, Lazy, Mark, Real, Undecided, V3};
 use crate::scene::Scene;
-
-/// Where a pixel's samples are, from its middle.
-fn offsets(sampling: Sampling<'_>, x: u32, y: u32) -> impl Iterator<Item = [f64; 2]> {
-    let (hashed, given): (u32, &[[f64; 2]]) = match sampling {
-        Sampling::Once => (0, &[[0.0; 2]]),
-        Sampling::Hash(samples) => (samples, &[]),
-        Sampling::Given(offsets) => (0, offsets),
-    };
-    (0..hashed)
-        .map(move |sample| jitter::hash(x, y, sample))
-        .chain(given.iter().copied())
-}
-
-/// The mean of a pixel's samples, of which `at` tells each; those that are not `wanted` count as 0.
-fn mean<R: Real>(
-    sampling: Sampling<'_>,
-    x: u32,
-    y: u32,
-    wanted: impl Fn(u32) -> bool,
-    mut at: impl FnMut(f64, f64) -> Result<V3<R>, Fault>,
-) -> Result<V3<R>, Fault> {
-    let (px, py) = (f64::from(x), f64::from(y));
-    if let Sampling::Once = sampling {
-        return at(px, py);
-    }
-    let mut sum = V3::new(R::zero(), R::zero(), R::zero());
-    for (sample, [a, b]) in (0..).zip(offsets(sampling, x, y)) {
-        if wanted(sample) {
-            sum = sum + at(px + a, py + b)?;
-        }
-    }
-    let n = R::exact(f64::from(sampling.samples()));
-    Ok(V3::new(sum.x / n, sum.y / n, sum.z / n))
-}
-
-/// The value of pixel (x, y), counted from the bottom left: the mean of its samples.
-pub fn make_pixel<R: Real>(
-    scene: &Prepared<R>,
-    limits: &Limits,
-    sampling: Sampling<'_>,
-    x: u32,
-    y: u32,
-) -> Result<V3<R>, Fault> {
-    mean(sampling, x, y, |_| true, |x, y| color(scene, limits, x, y))
-}
-
-/// The colour of a sample.
-fn color<R: Real>(scene: &Prepared<R>, limits: &Limits, x: f64, y: f64) -> Result<V3<R>, Fault> {
-    ray_trace(scene, limits, x, y, &mut Unobserved).map(|traced| traced.color)
-}
 
 /// What the ray through a place on the screen hits first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +54,9 @@ fn first_hit<R: Real>(
         }
     }))
 }
+
+/// By which powers of two a ray may be fainter than others and yet be followed, where bytes hang on it.
+const FAINTER: [i32; 2] = [-100, -900];
 
 /// What is added to the error of a part: more than all that was flushed to 0 in its sums.
 const FLUSHED: f64 = 1.0 / (1_u128 << 100) as f64;
@@ -169,6 +124,7 @@ impl<'a> ExactTracer<'a> {
         y: u32,
     ) -> Option<[Bounded; 3]> {
         let v = make_pixel(&self.bounded, limits, sampling, x, y).ok()?;
+        let v = v.closed()?;
         // The bound is kept low by its own roundings until it is used.
         let used = |c: Bounded| Bounded {
             error: c.error * Bounded::GROW,
@@ -207,11 +163,7 @@ impl<'a> ExactTracer<'a> {
                 Err(Fault::Undecided) => {}
             }
         }
-        let exact = self.exactly(|scene| {
-            let v = make_pixel(scene, limits, sampling, x, y)?;
-            Ok(self.decided(v, DecidedBy::Bounded)?)
-        });
-        match exact {
+        match self.pixel_exactly(limits, sampling, x, y) {
             (Ok(decided), by) => Ok(Decided { by, ..decided }),
             (Err(Fault::TooManyRays), _) => Err(fault),
             (Err(Fault::Undecided), _) => {
@@ -246,7 +198,11 @@ impl<'a> ExactTracer<'a> {
             let (value, error) = (f64::from(part.sum[i]), f64::from(part.error[i]) + FLUSHED);
             Bounded { value, error } / full
         });
-        match rest.and_then(|(rest, by)| Ok(self.decided(V3::new(r, g, b) + rest, by)?)) {
+        let whole = |rest: Value<Bounded>| Value {
+            color: V3::new(r, g, b) + rest.color,
+            ..rest
+        };
+        match rest.and_then(|(rest, by)| Ok(self.decided(whole(rest), by)?)) {
             Ok(decided) => Ok(Some(decided)),
             Err(Fault::Undecided) => Ok(None),
             Err(Fault::TooManyRays) => Err(PixelFault {
@@ -266,7 +222,7 @@ impl<'a> ExactTracer<'a> {
         x: u32,
         y: u32,
         wanted: impl Fn(u32) -> bool,
-    ) -> Result<(V3<Bounded>, DecidedBy), Fault> {
+    ) -> Result<(Value<Bounded>, DecidedBy), Fault> {
         let mut by = DecidedBy::Bounded;
         let v = mean(sampling, x, y, wanted, |x, y| {
             let (v, hardest) = self.sample_bounded(limits, x, y)?;
@@ -282,26 +238,60 @@ impl<'a> ExactTracer<'a> {
         limits: &Limits,
         x: f64,
         y: f64,
-    ) -> Result<(V3<Bounded>, DecidedBy), Fault> {
+    ) -> Result<(Value<Bounded>, DecidedBy), Fault> {
         match color(&self.bounded, limits, x, y) {
             Err(Fault::Undecided) => {}
             decided => return Ok((decided?, DecidedBy::Bounded)),
         }
+        let value = |[r, g, b]: [Bounded; 3], open| Value {
+            color: V3::new(r, g, b),
+            open,
+        };
         let exact = self.exactly(|scene| {
-            let v = color(scene, limits, x, y)?;
-            Ok(V3::new(v.x.bounded(), v.y.bounded(), v.z.bounded()))
+            let Value { color, open } = color(scene, limits, x, y)?;
+            Ok(value([color.x, color.y, color.z].map(Lazy::bounded), open))
         });
         match exact {
             (Err(Fault::Undecided), _) => {
-                let v = match color(self.plain(), limits, x, y) {
-                    Err(Fault::Undecided) => V3::new(0.0, 0.0, 0.0),
-                    v => v?,
+                let near = match color(self.plain(), limits, x, y) {
+                    Err(Fault::Undecided) => [0.0; 3],
+                    v => v?.color.to_f64().to_array(),
                 };
-                let v = V3::new(v.x.enclosure(), v.y.enclosure(), v.z.enclosure());
-                Ok((v, DecidedBy::Presumed))
+                Ok((
+                    value(near.map(Real::enclosure), [0.0; 3]),
+                    DecidedBy::Presumed,
+                ))
             }
             (v, by) => Ok((v?, by)),
         }
+    }
+
+    /// Pixel (x, y) in exact numbers. If its bytes hang on rays that are too faint to be followed, then more are.
+    fn pixel_exactly(
+        &self,
+        limits: &Limits,
+        sampling: Sampling<'_>,
+        x: u32,
+        y: u32,
+    ) -> (Result<Decided, Fault>, DecidedBy) {
+        let attempt = |fainter: i32| {
+            let mut open = false;
+            let decided = self.exactly(|scene| {
+                let faint = limits.faint * two_to(fainter);
+                let v = make_pixel(scene, &Limits { faint, ..*limits }, sampling, x, y)?;
+                open = v.open != [0.0; 3];
+                Ok(self.decided(v, DecidedBy::Bounded)?)
+            });
+            (decided, open)
+        };
+        let mut last = attempt(0);
+        for fainter in FAINTER {
+            if !matches!(last, ((Err(Fault::Undecided), _), true)) {
+                break;
+            }
+            last = attempt(fainter);
+        }
+        last.0
     }
 
     /// Does something with the scene in this thread's exact numbers, and tells what it took.
@@ -365,8 +355,18 @@ impl<'a> ExactTracer<'a> {
     }
 
     /// A pixel from its value.
-    fn decided<R: Real>(&self, v: V3<R>, by: DecidedBy) -> Result<Decided, Undecided> {
-        let bytes = camera_setpix(v)?;
+    fn decided<R: Real>(&self, v: Value<R>, by: DecidedBy) -> Result<Decided, Undecided> {
+        let (v, bytes) = match v.closed() {
+            Some(v) => (v, camera_setpix(v)?),
+            None => {
+                // The least and the most that it may be have the same bytes, or it is not known well enough.
+                let bytes = camera_setpix(v.color)?;
+                if camera_setpix(v.most())? != bytes || self.values {
+                    return Err(Undecided);
+                }
+                (v.color, bytes)
+            }
+        };
         let value = if self.values {
             [v.x.nearest_f32()?, v.y.nearest_f32()?, v.z.nearest_f32()?]
         } else {

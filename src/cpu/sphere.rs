@@ -1,6 +1,6 @@
 //! Where rays meet a sphere. Referee of `shaders/sphere.wgsl`.
 
-use super::camera::Ray;
+use super::camera::{Ray, steps_from};
 use crate::prepare::{Camera, Sphere, WorldSphere};
 use crate::real::{Real, Undecided, V3};
 
@@ -36,9 +36,8 @@ fn sphere_disc<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>, al
 #[inline]
 fn sphere_offset<R: Real>(camera: &Camera<R>, sphere: &Sphere<R>, ray: &Ray<R>) -> Option<[R; 2]> {
     let projected = sphere.projected.as_ref()?;
-    let axis = |i: usize| {
-        camera.step[i].times(ray.pixel[i] - f64::from(projected.anchor[i])) + projected.offset[i]
-    };
+    let axis =
+        |i: usize| steps_from(camera, i, ray.pixel[i], projected.anchor[i]) + projected.offset[i];
     Some([axis(0), axis(1)])
 }
 

@@ -1,14 +1,12 @@
-//! The closest hit of a primary ray, and the colour that a ray brings. Referee of `shaders/closest.wgsl`, `point.wgsl`
-//! and `trace.wgsl`.
+//! The closest hit of a primary ray, and the colour that it brings, for which `tree` follows the rays that leave from
+//! there. Referee of `shaders/closest.wgsl`, `point.wgsl` and `trace.wgsl`.
 
 use super::camera::{Ray, camera_getdir, inverse_distance};
-use super::light::{Lit, light_term, normal_at};
 use super::plane::{on_plane, plane_hits};
 use super::sphere::{sphere_from_center, sphere_hits};
 use super::surface::{Point, getamb};
-use super::world::{Range, closest_hit};
-use crate::prepare::{Prepared, Surface, World};
-use crate::real::rational::two_to;
+use super::tree::Tree;
+use crate::prepare::{Prepared, Surface};
 use crate::real::{Bounded, Real, Undecided, V3};
 
 pub use super::observer::{Branch, RayKind, TraceObserver, Unmet, Unobserved};
@@ -169,8 +167,10 @@ pub struct Traced<R> {
     pub hit: Option<Hit<R>>,
     /// Ambient reflectivity at the hit; zero without.
     pub ambient: V3<R>,
-    /// The colour.
+    /// The colour; or somewhat less, by what rays bring that were not followed.
     pub color: V3<R>,
+    /// How much less at most, by channels.
+    pub open: [f64; 3],
 }
 
 /// Traces the ray through pixel (x, y), counted from the bottom left, with fractions between pixels.
@@ -190,36 +190,23 @@ pub fn ray_trace<R: Real>(
             hit,
             ambient: zero,
             color: zero,
+            open: [0.0; 3],
         });
     };
     let point = locate(scene, &ray, &hit);
     let ambient = getamb(scene, &point)?;
-    let color = match &scene.world {
+    let (color, open) = match &scene.world {
         // Without lights the notes' ambient tracer is all there is.
-        None => ambient * inverse_distance(&scene.camera, &ray, hit.inverse),
+        None => {
+            let color = ambient * inverse_distance(&scene.camera, &ray, hit.inverse);
+            (color, [0.0; 3])
+        }
         Some(world) => {
             let length = ray.w2.sqrt();
-            let one = R::exact(1.0);
-            let first = Branch {
-                base: zero,
-                dir: ray.w * (one / length),
-                total: R::zero(),
-                last: None,
-                weight: V3::new(one, one, one),
-                counts: [true; 3],
-                parent: 0,
-                kind: RayKind::Primary,
-            };
-            let mut tree = Tree {
-                scene,
-                world,
-                waiting: Vec::new(),
-                rays: 1,
-                color: zero,
-            };
-            tree.shade(0, &first, length / hit.inverse, &point, observer)?;
-            tree.grow(limits, observer)?;
-            tree.color
+            let dir = ray.w * (R::exact(1.0) / length);
+            let mut tree = Tree::new(scene, world, limits);
+            tree.grow(dir, length / hit.inverse, &point, observer)?;
+            (tree.color, tree.open)
         }
     };
     Ok(Traced {
@@ -227,145 +214,6 @@ pub fn ray_trace<R: Real>(
         hit: Some(hit),
         ambient,
         color,
+        open,
     })
-}
-
-/// The rays of a sample: those that wait, and what the others brought.
-struct Tree<'a, R> {
-    scene: &'a Prepared<R>,
-    world: &'a World<R>,
-    waiting: Vec<Branch<R>>,
-    rays: u32,
-    color: V3<R>,
-}
-
-impl<R: Real> Tree<'_, R> {
-    /// Follows the waiting rays, and those that they leave, to their ends.
-    fn grow(&mut self, limits: &Limits, observer: &mut impl TraceObserver<R>) -> Result<(), Fault> {
-        let longest = R::exact(limits.max_path) * R::exact(two_to(-self.scene.camera.scale));
-        while let Some(ray) = self.waiting.pop() {
-            if self.saturated(limits.enough) {
-                observer.full(self.waiting.len() + 1);
-                return Ok(());
-            }
-            let number = self.rays;
-            let mark = R::mark();
-            if (ray.total - longest).positive()? {
-                R::release(mark);
-                observer.missed(number, &ray, Unmet::TooLong);
-                continue;
-            }
-            if self.rays == limits.max_rays {
-                return Err(Fault::TooManyRays);
-            }
-            self.rays += 1;
-            let range = Range {
-                skip: ray.last,
-                light: None,
-            };
-            match closest_hit(self.world, ray.base, ray.dir, &range)? {
-                Some(hit) => self.shade(number, &ray, hit.t, &hit.point, observer)?,
-                None => {
-                    R::release(mark);
-                    observer.missed(number, &ray, Unmet::Nothing);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether the colour is certainly at least `enough` in all channels, so that the other rays cannot change the
-    /// bytes.
-    fn saturated(&self, enough: f64) -> bool {
-        let color = self.color;
-        enough.is_finite()
-            && [color.x, color.y, color.z].into_iter().all(|c| {
-                let Bounded { value, error } = c.quick_enclosure();
-                value - error * Bounded::GROW >= enough * (1.0 + f64::EPSILON)
-            })
-    }
-
-    /// Adds what a ray that met `point` at distance `t` brings, and leaves the rays that go on from there.
-    fn shade(
-        &mut self,
-        number: u32,
-        ray: &Branch<R>,
-        t: R,
-        point: &Point<R>,
-        observer: &mut impl TraceObserver<R>,
-    ) -> Result<(), Fault> {
-        let (scene, world) = (self.scene, self.world);
-        let normal = normal_at(world, scene.is_plane[point.object], point);
-        let mut color = getamb(scene, point)?;
-        observer.met(number, ray, t, point, color);
-        for light in 0..world.lights.len() {
-            let mark = R::mark();
-            let lit = light_term(scene, world, light, point, normal, ray.base)?;
-            observer.light(light, &lit);
-            if let Lit::Lit { diffuse, glint, .. } = lit {
-                color = color + diffuse + glint;
-            } else {
-                R::release(mark);
-            }
-        }
-        let total = ray.total + t;
-        let material = &scene.palette[scene.materials[point.object]];
-        let one = R::exact(1.0);
-        let kept = if material.transparent {
-            one - material.transparency
-        } else {
-            one
-        };
-        let share = (kept / total).times(two_to(-scene.camera.scale));
-        let share = ray.weight.each(color) * share;
-        observer.adds(share);
-        self.color = self.color + share;
-        let last = Some(world.groups[point.object]);
-        let mut leave = |kind: RayKind, dir: V3<R>, weight: V3<R>, channels: [bool; 3]| {
-            let counts = [0, 1, 2].map(|i| ray.counts[i] && channels[i]);
-            let branch = Branch {
-                base: point.position,
-                dir,
-                total,
-                last,
-                weight,
-                counts,
-                parent: number,
-                kind,
-            };
-            // A ray that counts for nothing need not be traced.
-            if counts == [false; 3] {
-                observer.missed(number, &branch, Unmet::Weightless);
-            } else {
-                self.waiting.push(branch);
-            }
-        };
-        if material.mirror {
-            let mirrored = if scene.is_plane[point.object] {
-                // With the normal as it is given there is no root in the direction.
-                let plane = &world.planes[world.places[point.object]];
-                let [x, y, z] = plane.mirror;
-                V3::new(x.dot(ray.dir), y.dot(ray.dir), z.dot(ray.dir))
-            } else {
-                let along = normal.dot(-ray.dir);
-                normal * (along + along) + ray.dir
-            };
-            leave(
-                RayKind::Mirror,
-                mirrored,
-                ray.weight.each(material.specular),
-                material.mirrored,
-            );
-        }
-        if material.transparent {
-            let tint = &scene.palette[super::surface::tile_material(scene, point)?];
-            leave(
-                RayKind::Through,
-                ray.dir,
-                ray.weight.each(tint.tint) * material.transparency,
-                tint.passed,
-            );
-        }
-        Ok(())
-    }
 }

@@ -1,6 +1,8 @@
 //! Materials and lights in the tracer's number type.
 
-use crate::real::rational::two_to;
+use glam::DVec3;
+
+use crate::real::rational::{exponent, two_to};
 use crate::real::{Real, V3};
 use crate::scene;
 
@@ -68,6 +70,8 @@ pub struct Light<R> {
     pub emissivity: V3<R>,
     /// A spotlight's axis, of unit length, and the cosine of its half angle.
     pub cone: Option<(V3<R>, R)>,
+    /// 1 − that cosine, of a cone so narrow that the difference from 1 is what counts.
+    pub narrow: Option<R>,
 }
 
 impl<R: Real> Light<R> {
@@ -76,13 +80,29 @@ impl<R: Real> Light<R> {
         let unit = R::exact(two_to(-scale));
         let location = V3::exact(light.location);
         let cone = light.cone.map(|cone| {
-            let axis = (V3::exact(cone.point) - location) * unit;
+            let axis = V3::exact(cone.point) - location;
+            let axis = of_size_one(axis, cone.point - light.location);
             (axis.unit(), R::cos_degrees(cone.theta))
         });
+        let narrow = light.cone.and_then(|cone| R::versine_degrees(cone.theta));
         Self {
             location: (location - viewpoint) * unit,
             emissivity: V3::exact(light.emissivity),
             cone,
+            narrow,
         }
     }
+}
+
+/// A vector times the power of two that brings its largest component, of which `near` tells the size, to 1 or next
+/// above: so that squares stay within the range of f64.
+fn of_size_one<R: Real>(v: V3<R>, near: DVec3) -> V3<R> {
+    let largest = near.abs().max_element();
+    if largest == 0.0 || largest.is_infinite() {
+        return v;
+    }
+    // In two steps, as one need not be an f64.
+    let power = -exponent(largest);
+    let half = power / 2;
+    v * R::exact(two_to(half)) * R::exact(two_to(power - half))
 }

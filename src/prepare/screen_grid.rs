@@ -37,6 +37,9 @@ const CLEARANCE: f64 = 1.0 + 1e-5;
 const PAD: f64 = 1e-9;
 const PAD_PIXELS: f64 = 1e-3;
 
+/// Pixels nearer together than this are beyond what is known of outlines: then a sphere is in every list.
+const LEAST_STEP: f64 = 1e-100;
+
 /// The lists.
 #[derive(Debug, Clone)]
 pub struct ScreenGrid {
@@ -225,8 +228,10 @@ impl Outlines {
         let r = radius * self.unit;
         let (depth, d) = (-c.z, self.distance);
         let everywhere = self.pixels.map(|n| [0, n - 1]);
-        // A NaN fails these comparisons. The squares of depths between these limits stay in range.
-        let outside = depth > r * CLEARANCE && depth > 1e-100 && depth < 1e100;
+        // A NaN fails these comparisons. The squares of depths between these limits stay in range. What underflow takes
+        // from a product
+        // moves an outline by less than 10⁻²⁰⁰ then.
+        let outside = depth > r * CLEARANCE && depth > 1e-50 && depth < 1e100;
         if !outside {
             return Some((f32::MAX, everywhere));
         }
@@ -253,7 +258,7 @@ impl Outlines {
                 pixel(middle + root, 1.0).floor(),
             );
             let last = f64::from(self.pixels[i] - 1);
-            if !(self.step[i] > 0.0 && low.is_finite() && high.is_finite()) {
+            if !(self.step[i] > LEAST_STEP && low.is_finite() && high.is_finite()) {
                 continue;
             }
             if low > last || high < 0.0 || low > high {

@@ -1,5 +1,7 @@
 //! Spheres as primary rays see them: by the perpendicular from the center to the ray, never by b² − 4ac.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::camera::{ANCHOR_LIMIT, Camera};
@@ -43,6 +45,9 @@ pub struct ProjectedCenter<R> {
 /// Spheres seen under more than a right angle (ρ² > ½) take the form (e·W)² − κ²·W·W, which is the accurate one there.
 const SMALL_RHO2: f64 = 0.5;
 
+/// Squared distances in which what under- and overflow take is nothing beside a millionth of them.
+const SQUARES: Range<f64> = 1e-280..1e300;
+
 impl<R: Real> Sphere<R> {
     /// Prepares a sphere; None if no ray through the screen can hit it: the viewpoint is in or on it (a ray that starts
     /// inside misses), or all of it lies behind.
@@ -63,9 +68,11 @@ impl<R: Real> Sphere<R> {
         let c2 = c.dot(c);
         let mut power = c2 - r * r;
         // Near the surface the difference of squares has lost its bits, its sign first: there it is taken exactly.
-        // It is taken exactly, too, where squares leave f64's range and comparisons with NaN fail.
+        // Likewise where squares are out of f64's range: too large, or so small that what underflow takes counts beside
+        // them.
         let (near, far) = (power.to_f64(), c2.to_f64());
-        if !(near.abs() > 1e-6 * far && near.is_finite() && far.is_finite()) {
+        let clear = near.abs() > 1e-6 * far && near.is_finite() && SQUARES.contains(&far);
+        if !clear {
             let exact = power_of_viewpoint(viewpoint, center, radius);
             if exact <= Ratio::ZERO {
                 return None;

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use super::brightest::Brightest;
 use super::bvh::{self, Bvh};
 use super::extent::Extent;
 use super::material::Light;
@@ -35,6 +36,8 @@ pub struct World<R> {
     pub places: Arc<Vec<usize>>,
     /// The rule H.z ≤ τ for positions.
     pub highest: R,
+    /// How much a ray can bring.
+    pub brightest: Arc<Brightest>,
 }
 
 impl<R: Real> World<R> {
@@ -57,6 +60,7 @@ impl<R: Real> World<R> {
             places[sphere.object] = place;
         }
         world.places = Arc::new(places);
+        world.brightest = Arc::new(Brightest::new(scene, &world, scale, hidden));
         world
     }
 
@@ -73,6 +77,7 @@ impl<R: Real> World<R> {
         Self {
             bvh: before.bvh.clone(),
             on_demand: on_demand.cloned(),
+            brightest: Arc::clone(&before.brightest),
             ..Self::of(
                 scene,
                 scale,
@@ -113,6 +118,7 @@ impl<R: Real> World<R> {
                 &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z))
                     / power_of_two(scale)),
             ),
+            brightest: Arc::default(),
         };
         for (object, entity) in scene.objects.iter().enumerate() {
             match entity.shape {

@@ -50,6 +50,7 @@ struct Counts {
     nothing: usize,
     too_long: usize,
     weightless: usize,
+    faint: usize,
     full: usize,
     hidden: usize,
 }
@@ -98,6 +99,7 @@ impl<'a> Tree<'a> {
             nothing,
             too_long,
             weightless,
+            faint,
             full,
             hidden,
         } = self.counts;
@@ -119,6 +121,7 @@ impl<'a> Tree<'a> {
             format!("their paths are longer than {}", self.max_path),
         );
         not_followed(weightless, "their weight is 0".to_owned());
+        not_followed(faint, "nothing that they bring can count".to_owned());
         not_followed(
             full,
             "the colour is full in all channels without them".to_owned(),
@@ -151,9 +154,10 @@ impl<'a> Tree<'a> {
             nothing,
             too_long,
             weightless,
+            faint,
             ..
         } = self.counts;
-        self.showing = self.all || met + nothing + too_long + weightless < SHOWN_RAYS;
+        self.showing = self.all || met + nothing + too_long + weightless + faint < SHOWN_RAYS;
         self.counts.hidden += usize::from(!self.showing);
         self.indent = "  ".repeat(self.ancestors.len().min(DEEPEST) + 1);
     }
@@ -248,6 +252,11 @@ impl TraceObserver<f64> for Tree<'_> {
                 &mut self.counts.weightless,
                 false,
                 "not followed, its weight is 0".to_owned(),
+            ),
+            Unmet::Faint => (
+                &mut self.counts.faint,
+                false,
+                "not followed, nothing that it brings can count".to_owned(),
             ),
         };
         *count += 1;

@@ -233,6 +233,10 @@ impl Real for Bounded {
         }
     }
 
+    fn versine_degrees(angle: f64) -> Option<Self> {
+        lazy::bounded_versine(angle)
+    }
+
     #[inline(always)]
     fn sign(self) -> Result<Ordering, Undecided> {
         if self.value.abs() > self.error * Self::GROW {
@@ -270,6 +274,30 @@ impl Real for Bounded {
         Ok(Self {
             value: self.value.abs(),
             error: self.error,
+        })
+    }
+
+    const JOINS: bool = true;
+
+    fn joined(self, other: Self) -> Option<Self> {
+        let apart = (other.value - self.value).abs();
+        let error = self.error.max(other.error + apart * (1.0 + 2.0 * U));
+        // Numbers that may be equal overlap, and are not much farther apart than each is known.
+        (apart <= (self.error + other.error) && error.is_finite()).then_some(Self {
+            value: self.value,
+            error,
+        })
+    }
+
+    fn up_to(self, more: f64) -> Option<Self> {
+        let half = 0.5 * more;
+        Some(if more == 0.0 {
+            self
+        } else {
+            self + Self {
+                value: half,
+                error: half * Self::GROW + TINY,
+            }
         })
     }
 

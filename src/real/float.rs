@@ -36,6 +36,11 @@ impl Real for f64 {
         }
     }
 
+    fn versine_degrees(angle: f64) -> Option<Self> {
+        // Below a degree the cosine loses digits against 1.
+        (angle < 1.0).then(|| 2.0 * (0.5 * angle.to_radians()).sin().powi(2))
+    }
+
     #[inline]
     fn sign(self) -> Result<Ordering, Undecided> {
         self.partial_cmp(&0.0).ok_or(Undecided)
@@ -44,6 +49,10 @@ impl Real for f64 {
     #[inline]
     fn floor(self) -> Result<f64, Undecided> {
         Ok(whole_below(self))
+    }
+
+    fn up_to(self, _: f64) -> Option<Self> {
+        Some(self)
     }
 
     #[inline]

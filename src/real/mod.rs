@@ -61,6 +61,9 @@ pub trait Real:
     /// The cosine of an angle of 0 to 180 degrees.
     fn cos_degrees(angle: f64) -> Self;
 
+    /// 1 − the cosine of a small angle, as accurate as a number of its size; None where the cosine itself does.
+    fn versine_degrees(angle: f64) -> Option<Self>;
+
     /// The sign of the number, if it is certain.
     fn sign(self) -> Result<Ordering, Undecided>;
 
@@ -73,6 +76,21 @@ pub trait Real:
         let modulus = f64::from(modulus);
         let rest = self.floor()? % modulus;
         Ok(if rest < 0.0 { rest + modulus } else { rest } as u32)
+    }
+
+    /// Whether the type has one number for two that may be equal; see [`joined`](Real::joined).
+    const JOINS: bool = false;
+
+    /// One number of which nothing is said that does not hold for both, if they may be equal.
+    fn joined(self, other: Self) -> Option<Self> {
+        let _ = other;
+        None
+    }
+
+    /// One number of which nothing is said that does not hold for all that are larger by 0 to `more`, if the type has
+    /// such.
+    fn up_to(self, more: f64) -> Option<Self> {
+        (more == 0.0).then_some(self)
     }
 
     /// An f64 near the number: for people to read, and where any number near it will do.

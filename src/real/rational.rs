@@ -72,7 +72,36 @@ pub fn power_of_two(exponent: i32) -> Ratio {
     }
 }
 
+/// The exponent of the power of two next below |value|, which is finite and not 0.
+pub fn exponent(value: f64) -> i32 {
+    let bits = value.abs().to_bits();
+    match (bits >> 52) as i32 {
+        0 => -1011 - bits.leading_zeros().cast_signed(),
+        biased => biased - 1023,
+    }
+}
+
 /// 2^exponent as an f64, exactly; |exponent| ≤ 1022.
 pub fn two_to(exponent: i32) -> f64 {
     f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents_are_those_of_the_power_below() {
+        for (value, want) in [
+            (1.0, 0),
+            (-1.5, 0),
+            (0.75, -1),
+            (f64::MAX, 1023),
+            (f64::MIN_POSITIVE, -1022),
+            (f64::from_bits(1), -1074),
+            (f64::from_bits(0x000f_ffff_ffff_ffff), -1023),
+        ] {
+            assert_eq!(exponent(value), want, "{value:e}");
+        }
+    }
 }

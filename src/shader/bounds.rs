@@ -116,7 +116,7 @@ impl Screen {
     }
 
     /// What a coordinate's own rounding adds to the error of a form, for a unit of its coefficient.
-    fn offset_error(&self) -> f64 {
+    pub fn offset_error(&self) -> f64 {
         if self.margin > 0.0 && self.lattice == 0.0 {
             OFFSET_ERROR
         } else {

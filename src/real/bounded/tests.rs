@@ -21,13 +21,41 @@ fn random() -> impl FnMut() -> f64 {
     }
 }
 
-/// Whether the exact number lies within the bound, the bound times `scale` taken.
+/// Numbers of all sizes that f64 has, four of one or two in a row, so that what they make is of any size too.
+fn anywhere() -> impl FnMut() -> f64 {
+    let mut next = random();
+    let (mut sizes, mut left) = ([0; 2], 0);
+    move || {
+        if left == 0 {
+            left = 4;
+            // A third of them about the smallest, whose products are none.
+            let size = |x: f64| (x.abs() * 1e9) as i32 % 2098 - 1074;
+            sizes = [size(next()), size(next())];
+            if sizes[0] % 3 == 0 {
+                sizes = sizes.map(|size| (size - 1074) / 2);
+            }
+        }
+        left -= 1;
+        let (value, size) = (next(), sizes[left % 2]);
+        // In two steps, as one need not be an f64.
+        let scaled = value * f64::from(size / 2).exp2() * f64::from(size - size / 2).exp2();
+        if scaled.is_finite() { scaled } else { value }
+    }
+}
+
+/// Whether the exact number lies within the bound, the bound times `scale` taken, or nothing is said of it.
 fn holds(x: Bounded, exact: &Ratio, scale: f64) -> bool {
+    if !(x.value.is_finite() && x.error.is_finite()) {
+        return x.sign().is_err() && x.byte().is_err() && x.floor().is_err();
+    }
     abs(ratio(x.value) - exact) <= ratio(x.error * Bounded::GROW * scale)
 }
 
 /// The same of a root, by squares.
 fn holds_root(x: Bounded, square: &Ratio, scale: f64) -> bool {
+    if !(x.value.is_finite() && x.error.is_finite()) {
+        return x.sign().is_err();
+    }
     let error = ratio(x.error * Bounded::GROW * scale);
     let (low, high) = (ratio(x.value) - &error, ratio(x.value) + error);
     (low <= Ratio::ZERO || &low * &low <= *square) && &high * &high >= *square
@@ -35,8 +63,7 @@ fn holds_root(x: Bounded, square: &Ratio, scale: f64) -> bool {
 
 /// How many results of random expressions lie outside of their bounds scaled; and how near the worst comes to its
 /// bound.
-fn outside(scale: f64, count: usize) -> (usize, f64) {
-    let mut next = random();
+fn outside(mut next: impl FnMut() -> f64, scale: f64, count: usize) -> (usize, f64) {
     let (mut outside, mut worst) = (0, 0.0_f64);
     for _ in 0..count {
         let (a, b, c, d) = (next(), next(), next(), next());
@@ -46,6 +73,10 @@ fn outside(scale: f64, count: usize) -> (usize, f64) {
         let exact = &ra * &rb - &rc * &rd;
         let mut check = |good: bool| outside += usize::from(!good);
         check(holds(cross, &exact, scale));
+        if b != 0.0 {
+            let quotient = &ra / &rb;
+            check(holds(Bounded::ratio(&quotient), &quotient, scale));
+        }
         if cross.error > 0.0 {
             let off = abs(ratio(cross.value) - &exact).to_f64().value();
             worst = worst.max(off / cross.error);
@@ -69,16 +100,46 @@ fn outside(scale: f64, count: usize) -> (usize, f64) {
 
 #[test]
 fn the_bound_contains_the_exact_result() {
-    let (outside, worst) = outside(1.0, 200_000);
+    let (outside, worst) = outside(random(), 1.0, 200_000);
     assert_eq!(outside, 0);
     // And is not absurdly wide.
     assert!(worst > 0.5, "the bound is never nearer than {worst}");
 }
 
 #[test]
+fn the_bound_contains_the_exact_result_of_any_size() {
+    let (outside, worst) = outside(anywhere(), 1.0, 30_000);
+    assert_eq!(outside, 0);
+    assert!(worst > 0.5, "the bound is never nearer than {worst}");
+}
+
+/// What encloses two numbers encloses each, and what is not known to differ has such.
+#[test]
+fn joined_numbers_hold_for_both() {
+    let third = Bounded::exact(1.0) / Bounded::exact(3.0);
+    let other = Bounded::exact(1.0) - Bounded::exact(2.0) / Bounded::exact(3.0);
+    let both = third.joined(other).unwrap();
+    for x in [third, other] {
+        assert!(both.value - both.error * Bounded::GROW <= x.value - x.error);
+        assert!(both.value + both.error * Bounded::GROW >= x.value + x.error);
+    }
+    assert_eq!(third.joined(Bounded::exact(0.5)), None);
+    assert_eq!(
+        Bounded::exact(1.0).joined(Bounded::exact(1.0)),
+        Some(Bounded::exact(1.0))
+    );
+    let unknown = Bounded::exact(1e308) * Bounded::exact(1e308);
+    assert_eq!(unknown.joined(unknown), None);
+    let more = third.up_to(0.25).unwrap();
+    assert!(more.value - more.error <= third.value - third.error);
+    assert!(more.value + more.error >= third.value + third.error + 0.25);
+    assert!(more.error < 0.126);
+}
+
+#[test]
 fn a_bound_that_is_too_small_is_noticed() {
-    assert!(outside(0.0, 1000).0 > 500);
-    assert!(outside(0.3, 20_000).0 > 0);
+    assert!(outside(random(), 0.0, 1000).0 > 500);
+    assert!(outside(random(), 0.3, 20_000).0 > 0);
 }
 
 #[test]

@@ -41,6 +41,8 @@ pub(super) enum Op {
     Sqrt(u32),
     /// The cosine of so many degrees, where no square roots give it.
     Cosine(f64),
+    /// 1 less the cosine of so few degrees, likewise.
+    Versine(f64),
     /// Not a number.
     Fault,
 }
@@ -73,6 +75,8 @@ pub(super) struct Arena {
     pub(super) effort: Effort,
     /// Exact numbers made since the effort was last asked for.
     pub(super) exact_made: usize,
+    /// Words of balls computed since then.
+    pub(super) words: usize,
 }
 
 /// More nodes than this, 200 MB of them, are not made.

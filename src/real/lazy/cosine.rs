@@ -43,10 +43,7 @@ fn pi(bits: usize) -> IBig {
 /// has 2³² of them.
 pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
     let precision = bits + GUARD;
-    let degrees = ratio(angle);
-    let phi = pi(precision) * degrees.numerator().clone()
-        / (IBig::from(degrees.denominator().clone()) * IBig::from(180));
-    let square = (&phi * &phi) >> precision;
+    let square = radians_squared(angle, precision);
     let mut term = IBig::ONE << precision;
     let mut sum = IBig::ZERO;
     let mut k = 0_i64;
@@ -63,21 +60,73 @@ pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
     Ball::new(sum, exp, Mag::two_to(exp + 32))
 }
 
-/// Whether the cosine of the angle can be had from rationals by square roots.
+/// 1 − the cosine of 0 to 1 degrees, known to so many bits of itself, not of 1.
+///
+/// φ²/2 − φ⁴/24 + …, in fixed point with as many more bits as φ² has zeros in front. As φ < 1/57, all errors but that
+/// of φ²/2 are less than a hundredth of it: in all fewer than 40 units for each bit of the precision, of which there
+/// are fewer than 2¹⁸. The ball has 2³², and φ²/2 at least 2^(bits + 63).
+pub(super) fn versine(angle: f64, bits: usize) -> Ball {
+    let exponent = crate::real::rational::exponent(angle);
+    // φ is more than 2^(exponent − 6).
+    let zeros = usize::try_from(2 * (6 - exponent)).unwrap_or(0);
+    let precision = bits + GUARD + zeros;
+    let square = radians_squared(angle, precision);
+    let mut term = square.clone() / IBig::from(2);
+    let mut sum = IBig::ZERO;
+    let mut k = 2_i64;
+    while !term.is_zero() {
+        if k % 4 == 2 {
+            sum += &term;
+        } else {
+            sum -= &term;
+        }
+        term = ((&term * &square) >> precision) / IBig::from((k + 1) * (k + 2));
+        k += 2;
+    }
+    let exp = -(precision as i64);
+    Ball::new(sum, exp, Mag::two_to(exp + 32))
+}
+
+/// 2^precision·φ², φ the angle in radians.
+fn radians_squared(angle: f64, precision: usize) -> IBig {
+    let degrees = ratio(angle);
+    let phi = pi(precision) * degrees.numerator().clone()
+        / (IBig::from(degrees.denominator().clone()) * IBig::from(180));
+    (&phi * &phi) >> precision
+}
+
+/// More halvings of an angle than this are not made by roots: as many roots in a row take longer to compute than the
+/// series, and a tower holds fewer.
+const MOST_HALVINGS: u32 = 10;
+
+/// How many square roots one after another make the cosine of the angle from rationals, less 1 at most; None if none
+/// do.
 ///
 /// Every f64 is k/2^m degrees, so e^{iθ} is a root of unity of an order n that divides 360·2^m = 2^(3+m)·3²·5. The
 /// degree of cos θ is φ(n)/2, a power of two just if 9 does not divide n, that is, if 3 divides k. Otherwise cos θ is
-/// in no tower of square roots, and no number that is compared with it here can be equal to it.
-pub(super) fn by_roots(angle: f64) -> bool {
+/// in no tower of square roots, and no number that is compared with it here can be equal to it. If θ is 12j/2^h with an
+/// odd j, 2^h divides φ(n): a tower of fewer than h − 1 roots does not hold it.
+pub(super) fn roots(angle: f64) -> Option<u32> {
     let bits = angle.to_bits();
     let fraction = bits & ((1 << 52) - 1);
-    let whole = if bits >> 52 == 0 {
-        fraction
-    } else {
-        fraction | (1 << 52)
+    let (whole, exponent) = match (bits >> 52) as i32 {
+        0 if fraction == 0 => return Some(0),
+        0 => (fraction, -1074),
+        biased => (fraction | (1 << 52), biased - 1075),
     };
-    // A power of two changes nothing about divisibility by three.
-    whole % 3 == 0
+    // A power of two changes nothing about divisibility by three; 12 has two of them.
+    (whole % 3 == 0)
+        .then(|| u32::try_from(2 - exponent - whole.trailing_zeros().cast_signed()).unwrap_or(0))
+}
+
+/// Whether the cosine of the angle is made by square roots.
+pub(super) fn by_roots(angle: f64) -> bool {
+    roots(angle).is_some_and(|halvings| halvings <= MOST_HALVINGS)
+}
+
+/// Whether 1 − the cosine of the angle is to be known beside it: the angle is small, and no roots make its cosine.
+pub(super) fn narrow(angle: f64) -> bool {
+    angle < 1.0 && !by_roots(angle)
 }
 
 /// The cosine by square roots: by half angles, from multiples of 12 degrees.

@@ -13,6 +13,11 @@ use crate::real::{Bounded, Real, Undecided};
 
 /// The precisions, in bits, in which an expression is computed.
 const BITS: [usize; 4] = [128, 256, 512, 1024];
+/// And then, where it is not large: what is near to the size of 1 and what is near to that of the smallest f64 differ
+/// in 1,074 bits, and a square of the one from a square of the other in twice as many.
+const MORE_BITS: [usize; 2] = [2560, 8192];
+/// Nodes of an expression that is not large.
+const MEDIUM: usize = 1 << 14;
 /// A number that is known not to be 0 is computed on and on; this is far beyond where one of ours ends.
 const MOST_BITS: usize = 1 << 17;
 /// Roots in an exact number: at once, and where 128 bits do not decide.
@@ -20,6 +25,8 @@ const FEW_ROOTS: usize = 2;
 const MOST_ROOTS: usize = 6;
 /// Expressions with more nodes than this are not computed: their numbers would take some hundred megabytes.
 const LARGEST: usize = 1 << 20;
+/// So many words of balls are computed for a pixel: some seconds. Then it is not decided.
+const MOST_WORDS: usize = 1 << 26;
 /// Expressions larger than this, or with more roots, are not tried exactly at once.
 const SMALL: usize = 400;
 /// So many exact numbers are made for a pixel: about a second. Then bits alone decide, and ties are presumed.
@@ -31,7 +38,7 @@ fn operands(op: &Op) -> [Option<u32>; 2] {
     match *op {
         Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) => [Some(a), Some(b)],
         Op::Neg(a) | Op::Sqrt(a) => [Some(a), None],
-        Op::Number(_) | Op::Ratio(_) | Op::Cosine(_) | Op::Fault => [None, None],
+        Op::Number(_) | Op::Ratio(_) | Op::Cosine(_) | Op::Versine(_) | Op::Fault => [None, None],
     }
 }
 
@@ -57,7 +64,8 @@ impl Arena {
             return Err(Undecided);
         }
         self.note(Effort::Precision);
-        if self.nodes.len() > LARGEST && self.below(x.0, |_| false).len() > LARGEST {
+        let too_large = self.nodes.len() > LARGEST && self.below(x.0, |_| false).len() > LARGEST;
+        if too_large || self.words > MOST_WORDS {
             self.note(Effort::Presumed);
             return Err(Undecided);
         }
@@ -83,14 +91,23 @@ impl Arena {
         if why == Some(TooHard::Undefined) {
             return Err(Undecided);
         }
-        if self.never_zero(x) {
-            let mut bits = 2 * BITS[3];
-            while bits <= MOST_BITS {
-                if let Some(sign) = self.ball(x, bits).and_then(|ball| ball.sign()) {
-                    return Ok(sign);
-                }
-                bits *= 2;
+        let last = if self.never_zero(x) {
+            MOST_BITS
+        } else if self.is_medium(x) {
+            MORE_BITS[1]
+        } else {
+            0
+        };
+        let mut bits = MORE_BITS[0];
+        while bits <= last {
+            if let Some(sign) = self.ball(x, bits).and_then(|ball| ball.sign()) {
+                return Ok(sign);
             }
+            bits = if bits < MORE_BITS[1] {
+                MORE_BITS[1]
+            } else {
+                2 * bits
+            };
         }
         self.note(Effort::Presumed);
         self.set_zero(x);
@@ -116,6 +133,11 @@ impl Arena {
         }
     }
 
+    /// Whether the expression is small enough for many bits.
+    fn is_medium(&mut self, x: Lazy) -> bool {
+        self.below_to(x.0, MEDIUM, |_| false).len() <= MEDIUM
+    }
+
     fn set_zero(&mut self, x: Lazy) {
         let node = &mut self.nodes[x.0 as usize];
         node.op = Op::Number(0.0);
@@ -123,14 +145,23 @@ impl Arena {
         node.known = None;
     }
 
-    /// Whether the number is the difference of one made by square roots and a cosine that cannot be.
+    /// Whether the number is the difference of one made by square roots and a cosine that cannot be made by so many.
     fn never_zero(&mut self, x: Lazy) -> bool {
         let Op::Sub(a, b) = self.node(x).op else {
             return false;
         };
-        let opaque = |arena: &Self, i: u32| matches!(arena.nodes[i as usize].op, Op::Cosine(_));
-        let order = self.below(a, |_| false);
-        opaque(self, b) && !order.iter().any(|&i| opaque(self, i))
+        let (Op::Cosine(angle) | Op::Versine(angle)) = self.nodes[b as usize].op else {
+            return false;
+        };
+        let mut roots = 0;
+        for i in self.below(a, |_| false) {
+            match self.nodes[i as usize].op {
+                Op::Cosine(_) | Op::Versine(_) => return false,
+                Op::Sqrt(_) => roots += 1,
+                _ => {}
+            }
+        }
+        cosine::roots(angle).is_none_or(|halvings| roots + 1 < halvings)
     }
 
     /// The f64 enclosure of a number whose floor is asked for. That it is an integer is a tie.
@@ -152,8 +183,14 @@ impl Arena {
         let whole = if small {
             Some(IBig::from(enclosure.value.round() as i64))
         } else {
-            BITS.into_iter()
-                .find_map(|bits| self.ball(x, bits).and_then(|ball| ball.integer()))
+            let more = if self.is_medium(x) {
+                &MORE_BITS[..]
+            } else {
+                &[]
+            };
+            BITS.iter()
+                .chain(more)
+                .find_map(|&bits| self.ball(x, bits).and_then(|ball| ball.integer()))
         };
         let whole = whole.ok_or(Undecided)?;
         let border = self.ratio(&Ratio::from(whole.clone()));
@@ -193,6 +230,7 @@ impl Arena {
             if has(&self.nodes[i as usize], bits) {
                 continue;
             }
+            self.words += bits / 64;
             let ball = self.compute(i, bits);
             let node = &mut self.nodes[i as usize];
             if let Some(ball) = &ball {
@@ -227,6 +265,7 @@ impl Arena {
             Op::Neg(a) => Some(of(*a)?.neg()),
             Op::Sqrt(a) => of(*a)?.sqrt(bits),
             Op::Cosine(angle) => Some(cosine::cosine(*angle, bits)),
+            Op::Versine(angle) => Some(cosine::versine(*angle, bits)),
             Op::Fault => None,
         }
     }
@@ -355,7 +394,7 @@ impl Arena {
                 let square = of(*a)?.clone();
                 self.tower.sqrt(&square, most)
             }
-            Op::Cosine(_) => Err(TooHard::Opaque),
+            Op::Cosine(_) | Op::Versine(_) => Err(TooHard::Opaque),
             Op::Fault => Err(TooHard::Undefined),
         }
     }

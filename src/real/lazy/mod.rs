@@ -36,6 +36,7 @@ impl Lazy {
     pub fn effort() -> Effort {
         with(|arena| {
             arena.exact_made = 0;
+            arena.words = 0;
             std::mem::take(&mut arena.effort)
         })
     }
@@ -52,9 +53,14 @@ impl Lazy {
 
     /// The cosine of an angle of which nothing but approximations is known.
     fn opaque_cosine(angle: f64) -> Self {
-        let enclosure = cosine::cosine(angle, 128).bounded();
+        let enclosure = bounded_cosine(angle);
         with(|arena| arena.push(Op::Cosine(angle), enclosure))
     }
+}
+
+/// A rigorous f64 enclosure of 1 − the cosine of a small angle, if that is to be known.
+pub(super) fn bounded_versine(angle: f64) -> Option<Bounded> {
+    cosine::narrow(angle).then(|| cosine::versine(angle, 128).bounded())
 }
 
 /// A rigorous f64 enclosure of the cosine of 0 to 180 degrees.
@@ -123,6 +129,11 @@ impl Real for Lazy {
         }
     }
 
+    fn versine_degrees(angle: f64) -> Option<Self> {
+        let enclosure = bounded_versine(angle)?;
+        Some(with(|arena| arena.push(Op::Versine(angle), enclosure)))
+    }
+
     fn sign(self) -> Result<Ordering, Undecided> {
         with(|arena| arena.sign(self))
     }
@@ -173,9 +184,10 @@ impl Real for Lazy {
         // The number is near the middle between two f32: its side of the middle decides, and on the middle the even one
         // is taken.
         let enclosure = self.bounded();
+        let margin = enclosure.error * Bounded::GROW;
         let (low, high) = (
-            (enclosure.value - enclosure.error) as f32,
-            (enclosure.value + enclosure.error) as f32,
+            (enclosure.value - margin).next_down() as f32,
+            (enclosure.value + margin).next_up() as f32,
         );
         let (low, high) = if low < high {
             (low, high)

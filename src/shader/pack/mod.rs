@@ -344,6 +344,8 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
     let parts = [0, 1].map(|i| upper_bound(camera.step[i]) * reach[i] + offset[i]);
     // κ − 1 = Σ 2o/(√(d² + o²) − o): docs/NUMERICS.md.
     let more = offset.map(|o| 2.0 * o / ((d * d + o * o).sqrt() - o));
+    // Offsets that were rounded to f32 move W, whose length is at least d.
+    let moved = camera.step.map(upper_bound).iter().sum::<f64>() * screen.offset_error();
     PackedCamera {
         numbers: CameraNumbers {
             anchor: camera.anchor,
@@ -354,8 +356,10 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
             unit: unit as f32,
             pad: Default::default(),
         },
-        w_error: round_up(5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt()),
-        condition: round_up(1.0 + more[0] + more[1]),
+        w_error: round_up(
+            5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt() + moved,
+        ),
+        condition: round_up(1.0 + more[0] + more[1] + moved / (d * U)),
     }
 }
 
@@ -374,3 +378,6 @@ fn bvh_node(node: &prepare::bvh::Node) -> BvhNode {
         count: node.count,
     }
 }
+
+#[cfg(test)]
+mod tests;

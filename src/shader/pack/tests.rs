@@ -1,0 +1,66 @@
+//! What the camera's numbers say of rays in f32.
+
+use std::path::Path;
+
+use super::*;
+use crate::jitter::{Jitter, Sampling};
+use crate::real::Real;
+use crate::real::rational::ratio;
+use crate::scene::load_from;
+use crate::shader::bounds::DIR_ROUNDINGS;
+
+/// W and its direction as the shader has them from an offset in f32, against those from the course's place: pixels far
+/// apart, seen from next to the middle one, show what the offset's rounding is.
+#[test]
+fn offsets_of_the_course_are_within_the_bounds_of_rays() {
+    let text = "camera c { pixeldim 3 3 worlddim 1600 1600 viewpoint 800 800 1 }";
+    let scene = load_from("test", text.as_bytes(), Path::new(".")).unwrap();
+    let settings = Settings {
+        samples: 4096,
+        jitter: SamplePattern::Course,
+        ..Settings::default()
+    };
+    let packed = Packed::new(&scene, &settings);
+    let PackedCamera {
+        numbers,
+        w_error,
+        condition,
+    } = packed.camera;
+    let exact = prepare::Camera::<Bounded>::new(&scene.camera);
+    let jitter: Jitter = settings.sampling(3, 3);
+    let (mut worst_w, mut worst_dir) = (0.0_f64, 0.0_f64);
+    for y in 0..3 {
+        let row = jitter.row(y).unwrap();
+        for x in 0..3 {
+            let Sampling::Given(offsets) = jitter.pixel(Some(&row), 3, x as usize) else {
+                panic!("the course's offsets are given")
+            };
+            for offset in offsets {
+                let component = |i: usize, pixel: u32| {
+                    let steps = (pixel as i32 - numbers.anchor[i]) as f32 + offset[i] as f32;
+                    let shader = steps * numbers.step[i] + numbers.offset[i];
+                    let place =
+                        ratio(f64::from(pixel) + offset[i]) - ratio(f64::from(exact.anchor[i]));
+                    let want = Bounded::ratio(&place) * exact.step[i] + exact.offset[i];
+                    (f64::from(shader), want.value)
+                };
+                let (a, b) = (component(0, x), component(1, y));
+                let d = exact.distance.value;
+                let length = |x: f64, y: f64| (x * x + y * y + d * d).sqrt();
+                let (is, ought) = (length(a.0, b.0), length(a.1, b.1));
+                let off = |a: f64, b: f64, c: f64| (a * a + b * b + c * c).sqrt();
+                worst_w = worst_w.max(off(a.0 - a.1, b.0 - b.1, 0.0));
+                worst_dir = worst_dir.max(off(
+                    a.0 / is - a.1 / ought,
+                    b.0 / is - b.1 / ought,
+                    d / is - d / ought,
+                ));
+            }
+        }
+    }
+    assert!(worst_w <= f64::from(w_error), "{worst_w:e} > {w_error:e}");
+    // What is computed with W afterwards has the bound that it has without samples.
+    let rounded = (DIR_ROUNDINGS - 1.5) * U;
+    let bound = DIR_ROUNDINGS * f64::from(condition) * U - rounded;
+    assert!(worst_dir <= bound, "{worst_dir:e} > {bound:e}");
+}

@@ -1,0 +1,102 @@
+//! Kinds of scenes whose lights and materials are extreme.
+
+use std::fmt::Write as _;
+
+use super::chance::Random;
+use super::kinds::{EXPONENTS, any_size, camera, scaled};
+
+/// Spotlights that light hardly anything, or hardly anything not.
+pub(super) fn spots(random: &mut Random) -> String {
+    let mut text = camera(random, 0);
+    text += "material a { ambient 1 1 1 diffuse 4 5 6 }\n";
+    let normal = random.one(&["0 0 1", "0 1 1", "1 0 2"]);
+    writeln!(
+        text,
+        "plane p {{ material a normal {normal} point 0 -1 -4 }}"
+    )
+    .unwrap();
+    if random.once_in(2) {
+        writeln!(
+            text,
+            "sphere s {{ material a center 4 3 -3 radius {} }}",
+            random.one(&["1", "0.5"])
+        )
+        .unwrap();
+    }
+    for _ in 0..1 + random.below(2) {
+        let theta = match random.below(5) {
+            0 => format!("{:?}", random.one(&[1e-3, 0.046875, 0.75, 1e-8, 3e-17])),
+            1 => scaled(random.between(1.0, 9.0), random.one(&EXPONENTS).min(-12)),
+            2 => format!("{:?}", 180.0 - random.one(&[1e-3, 1e-8, 1e-12, 3e-14, 0.0])),
+            3 => format!(
+                "{:?}",
+                90.0 + random.one(&[1e-8, -1e-8, 1.5e-14, -1.5e-14, 0.0])
+            ),
+            _ => format!("{:?}", random.between(1e-9, 180.0)),
+        };
+        let at = random.one(&["4 3 0", "4 3 4", "4 3 9", "2 3 1", "4 1.5 2"]);
+        let to = random.one(&["4 3 -4", "4 3 -1", "2 1 -3", "4 3 20", "6 4.5 -4"]);
+        writeln!(
+            text,
+            "spotlight l {{ location {at} emissivity 9 8 7 point {to} theta {theta} }}"
+        )
+        .unwrap();
+    }
+    text
+}
+
+/// Materials of any size.
+pub(super) fn stuff(random: &mut Random) -> String {
+    let mut text = camera(random, 0);
+    for name in ["a", "b", "c"] {
+        let colour = |random: &mut Random| {
+            let c = [0; 3].map(|_| {
+                let number = random.between(0.1, 9.0);
+                if random.once_in(2) {
+                    any_size(random, number)
+                } else {
+                    format!("{number:?}")
+                }
+            });
+            c.join(" ")
+        };
+        let share = match random.below(4) {
+            0 => "0.5".to_owned(),
+            1 => scaled(random.between(1.0, 9.0), random.one(&EXPONENTS).min(-12)),
+            _ => "0".to_owned(),
+        };
+        let specular = if random.once_in(2) {
+            colour(random)
+        } else {
+            "0".to_owned()
+        };
+        let (ambient, diffuse) = (colour(random), colour(random));
+        let shininess = random.one(&[
+            "0", "1", "30", "0.3", "1e-9", "1e-300", "1e3", "1e19", "1e300",
+        ]);
+        writeln!(
+            text,
+            "material {name} {{ ambient {ambient} diffuse {diffuse} specular {specular} shininess {shininess} transparency {share} }}"
+        )
+        .unwrap();
+    }
+    text += "plane w { material a normal 0 0 1 point 0 0 -6 }\nplane f { material b normal 0 1 0 point 0 -1 0 }\n";
+    let radius = random.one(&["1", "1.5"]);
+    writeln!(
+        text,
+        "sphere s {{ material c center 4 2 -3 radius {radius} }}"
+    )
+    .unwrap();
+    let number = random.between(0.1, 9.0);
+    let bright = any_size(random, number);
+    writeln!(
+        text,
+        "light l {{ location 2 5 -1 emissivity {bright} 3 1 }}"
+    )
+    .unwrap();
+    if random.once_in(2) {
+        let bright = any_size(random, 1.0);
+        writeln!(text, "light l {{ location 5 1 2 emissivity 1 {bright} 3 }}").unwrap();
+    }
+    text
+}
