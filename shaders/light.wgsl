@@ -145,7 +145,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#end
 //#end
 //#if certified
-    let way = SecondaryRay(point.position, d, point.error, d_error, point.size);
+    let way = SecondaryRay(point.position, d, point.error, d_error, 0.0, point.size);
     let blocked = shadow(way, Range(point.group, bit, 0.0, distance, 0.0, distance_error));
     sure &= blocked.sure;
 //#else

@@ -56,6 +56,8 @@ named! {
     DOT_ROUNDINGS = 5.0;
     /// Roundings of a mirrored direction.
     MIRROR_ROUNDINGS = 18.0;
+    /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
+    BOUNCE_ROUNDINGS = 30.0;
     /// Roundings of an index of tiles, blocks or texels.
     INDEX_ROUNDINGS = 5.0;
     /// Roundings of the colours of `color_wheel`.

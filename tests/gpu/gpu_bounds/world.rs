@@ -237,7 +237,7 @@ const CALL: &str = "
     let b = items[3u * i + 1u];
     let c = items[3u * i + 2u];
     let record = bitcast<u32>(a.w);
-    let ray = SecondaryRay(a.xyz, b.xyz, b.w, c.x, c.y);
+    let ray = SecondaryRay(a.xyz, b.xyz, b.w, c.x, 0.0, c.y);
     let range = Range(NOTHING, 0u, 0.0, T_MAX, 0.0, 0.0);
 ";
 
