@@ -4,8 +4,8 @@
 // A ray of the tree.
 struct Branch {
     ray: SecondaryRay,
-    // Length of the path up to its base; certified, within this of the true length up to the point of the true ray's
-    // line that `ray.base_error` is counted from.
+    // Length of the path up to its base; certified, within this of the true length up to the nearest point of the true
+    // ray's line, which may lie before the point where that ray starts.
     total: f32,
     total_error: f32, //~
     // The group of surfaces that it left from.
@@ -22,7 +22,7 @@ struct PathPoint {
     t_error: f32, //~
 //#if mirror
     // What a mirror here adds to the errors of the ray's line and of the path's length.
-    slip: f32, //~
+    slip: vec2f, //~
 //#end
 }
 //#if stack
@@ -48,12 +48,12 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
 
 //#if certified
 // What a mirror where a ray from anywhere ended adds to the errors of the line and of the path's length.
-fn mirror_slip(ray: SecondaryRay, at: PathPoint) -> f32 {
-    let slip = at.t * ray.dir_error + BOUNCE_ROUNDINGS * U * (ray.size + at.t);
+fn mirror_slip(ray: SecondaryRay, at: PathPoint) -> vec2f {
+    let slip = vec2f(at.t * ray.dir_error + BOUNCE_ROUNDINGS * U * (ray.size + at.t));
 //#if sphere_beyond
     // A curved mirror is met elsewhere, at another normal: the new line is known as well as the point.
     let curved = (objects[at.point.object].place & SPHERE_BIT) != 0u;
-    return select(slip, max(at.point.error - ray.base_error, at.t_error), curved);
+    return select(slip, vec2f(max(at.point.error - ray.base_error, 0.0), at.t_error + at.point.error), curved);
 //#else
     return slip;
 //#end
@@ -74,10 +74,10 @@ fn mirror_branch(ended: Branch, at: PathPoint, specular: vec3f) -> Branch {
     mirror.ray.dir_error = (1.0 + 5.0 * (point.normal_error + U)) * ended.ray.dir_error + 4.04 * point.normal_error
         + MIRROR_ROUNDINGS * U;
     // A mirror is an isometry: how far off the line is does not depend on the angle at which it is met.
-    mirror.ray.base_error = (1.0 + 4.0 * U) * (ended.ray.base_error + at.slip);
-    mirror.ray.start_error = at.t_error + at.slip;
+    mirror.ray.base_error = (1.0 + 4.0 * U) * (ended.ray.base_error + at.slip.x);
+    mirror.ray.start_error = at.t_error + at.slip.y;
     mirror.ray.size = point.size;
-    mirror.total_error = ended.total_error + at.slip;
+    mirror.total_error = ended.total_error + at.slip.y;
     mirror.weight_error = ended.weight_error + 2.0 * U;
 //#else
     mirror.ray.dir = 2.0 * along * point.normal + ended.ray.dir;

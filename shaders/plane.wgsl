@@ -79,6 +79,11 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let error = (ahead_error + abs(t) * along_error) * slope + 8.0 * U * abs(t);
     let start = error + ray.start_error;
     var out = (steep & (t < -start)) | (plane.group == range.skip) | ((plane.lights_on_surface & range.light) != 0u);
+//#if low_light
+    // The way to a light on the same side does not cross the plane, however near the light is.
+    let above = select(ahead, -ahead, plane.height > 0.0);
+    out |= ((plane.low_light & range.light) != 0u) & (above > ahead_error);
+//#end
     let in = steep & (t > start) & !out;
     intersection.error = error;
     // A plane seen edge-on is met far away, if at all.

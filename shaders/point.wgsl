@@ -69,6 +69,10 @@ fn complete(point: ptr<function, Point>) {
         (*point).normal = plane.normal;
         (*point).normal_error = 2.0 * U; //~
         (*point).position = (*point).position * plane.axis_mask + plane.fixed_coordinate;
+//#if low_light
+        (*point).low_light = plane.low_light; //~
+        (*point).height = plane.height; //~
+//#end
 //#if lights_on_surface
         (*point).lights_on_surface = plane.lights_on_surface;
 //#end

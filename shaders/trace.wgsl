@@ -111,7 +111,7 @@ fn ray_trace(ray: Ray) -> Traced {
     next_hit.t = t;
     next_hit.t_error = t_error; //~
 //#if mirror
-    next_hit.slip = max(next_hit.point.error, t_error); //~
+    next_hit.slip = vec2f(next_hit.point.error, next_hit.point.error + t_error); //~
 //#end
     follow(&traced, as_secondary_ray(ray), next_hit);
 //#else

@@ -6,7 +6,8 @@ struct SecondaryRay {
     // Of unit length.
     dir: vec3f,
 //#if certified
-    // How far base may be from a point of the true ray's line, and dir from its direction.
+    // How far base may be from a point of the true ray's line (in the tree of rays, from the nearest), and dir from its
+    // direction.
     base_error: f32,
     dir_error: f32,
     // How far that point may be from where the true ray starts.

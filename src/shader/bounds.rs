@@ -54,10 +54,20 @@ named! {
     DIRECTION_ROUNDINGS = 8.0;
     /// Roundings of a dot product of unit vectors.
     DOT_ROUNDINGS = 5.0;
+    /// Roundings of a height and its quotient by a distance, but for the distance's.
+    HEIGHT_ROUNDINGS = 2.0;
     /// Roundings of a mirrored direction.
     MIRROR_ROUNDINGS = 18.0;
     /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
     BOUNCE_ROUNDINGS = 30.0;
+    /// Shininess above this is left to the CPU.
+    MOST_SHININESS = (1_u64 << 20) as f64;
+    /// Roundings of the distance of two unit vectors, for a unit of it.
+    APART_ROUNDINGS = 9.0;
+    /// Roundings of a power, for a unit of its logarithm to base 2.
+    LOG_ROUNDINGS = 12.0;
+    /// The same, whatever its logarithm is; and those of the products that make a glint of it.
+    POWER_ROUNDINGS = 20.0;
     /// Roundings of an index of tiles, blocks or texels.
     INDEX_ROUNDINGS = 5.0;
     /// Roundings of the colours of `color_wheel`.

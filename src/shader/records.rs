@@ -245,12 +245,12 @@ records! {
         /// Diffuse reflectivity.
         diffuse: [f32; 3],
         /// Exponent of the glint, 0 for none.
-        #[any_size = "it is only compared with 0 where pixels are certified"]
+        #[any_size = "a large one is compared with `MOST_SHININESS`, and left to the CPU"]
         shininess: f32,
         /// Specular reflectivity.
         specular: [f32; 3],
-        /// The exponent if it is a whole number from 1 to 1023, else 0.
-        power: u32,
+        /// Nothing.
+        pad: Pad1,
         /// What tints light that goes through.
         tint: [f32; 3],
         /// 1 − transparency.
@@ -306,8 +306,10 @@ records! {
         highest: f32,
         /// Bound of the errors of the coordinates on the rectangle, but for what the position's error adds.
         sides_error: f32,
-        /// Nothing.
-        pad: Pad2,
+        /// The bit of the light that is so near to the plane that its height is told, or 0.
+        low_light: u32,
+        /// That light's height above the plane, to the normal's side.
+        height: f32,
     }
 
     /// A sphere for rays from anywhere; its center is from the viewpoint.
