@@ -4,7 +4,8 @@
 // A ray of the tree.
 struct Branch {
     ray: SecondaryRay,
-    // Length of the path before it.
+    // Length of the path up to its base; certified, within this of the true length up to the nearest point of the true
+    // ray's line, which may lie before the point where that ray starts.
     total: f32,
     total_error: f32, //~
     // The group of surfaces that it left from.
@@ -19,6 +20,10 @@ struct PathPoint {
     point: Point,
     t: f32,
     t_error: f32, //~
+//#if mirror
+    // What a mirror here adds to the errors of the ray's line and of the path's length.
+    slip: vec2f, //~
+//#end
 }
 //#if certified
 
@@ -52,8 +57,23 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
 }
 //#if mirror
 
+//#if certified
+// What a mirror where a ray from anywhere ended adds to the errors of the line and of the path's length.
+fn mirror_slip(ray: SecondaryRay, at: PathPoint) -> vec2f {
+    let slip = vec2f(at.t * ray.dir_error + BOUNCE_ROUNDINGS * U * (ray.size + at.t));
+//#if sphere_beyond
+    // A curved mirror is met elsewhere, at another normal: the new line is known as well as the point.
+    let curved = (objects[at.point.object].place & SPHERE_BIT) != 0u;
+    return select(slip, vec2f(max(at.point.error - ray.base_error, 0.0), at.t_error + at.point.error), curved);
+//#else
+    return slip;
+//#end
+}
+//#end
+
 // The mirror image of the ray that ended at a point.
-fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
+fn mirror_branch(ended: Branch, at: PathPoint, specular: vec3f) -> Branch {
+    let point = at.point;
     let along = -dot(point.normal, ended.ray.dir);
     var mirror: Branch;
     mirror.ray.base = point.position;
@@ -63,10 +83,13 @@ fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
     mirror.weight = barrier(ended.weight * specular);
     doubt |= !ordinary(ended.weight, specular, mirror.weight);
     mirror.ray.dir = barrier(2.0 * along * point.normal + ended.ray.dir);
-    mirror.ray.dir_error = SECOND_ORDER * ended.ray.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
-    mirror.ray.base_error = point.error;
+    mirror.ray.dir_error = (1.0 + 5.0 * (point.normal_error + U)) * ended.ray.dir_error + 4.04 * point.normal_error
+        + MIRROR_ROUNDINGS * U;
+    // A mirror is an isometry: how far off the line is does not depend on the angle at which it is met.
+    mirror.ray.base_error = (1.0 + 4.0 * U) * (ended.ray.base_error + at.slip.x);
+    mirror.ray.start_error = at.t_error + at.slip.y;
     mirror.ray.size = point.size;
-    mirror.total_error = ended.total_error;
+    mirror.total_error = ended.total_error + at.slip.y;
     mirror.weight_error = ended.weight_error + 2.0 * U;
 //#else
     mirror.weight = ended.weight * specular;
@@ -78,14 +101,22 @@ fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
 //#if transparent
 
 // The ray that goes on behind the point at which a ray ended.
-fn through_branch(ended: Branch, point: Point, transparency: f32) -> Branch {
+fn through_branch(ended: Branch, at: PathPoint, transparency: f32) -> Branch {
+    let point = at.point;
     var through = ended;
-    through.ray.base = point.position;
     through.last = point.group;
 //#if certified
-    through.ray.base_error = point.error;
-    through.ray.size = point.size;
+    // It stays on the same line.
+    let base = barrier(ended.ray.base + at.t * ended.ray.dir);
+    let slip = at.t * ended.ray.dir_error + POSITION_ROUNDINGS * U * (ended.ray.size + at.t);
+    through.ray.base = base;
+    through.ray.base_error = (1.0 + 4.0 * U) * (ended.ray.base_error + slip);
+    through.ray.start_error = at.t_error + slip;
+    through.ray.size = abs(base.x) + abs(base.y) + abs(base.z);
+    through.total_error = ended.total_error + slip;
     through.weight_error = ended.weight_error + 5.0 * U;
+//#else
+    through.ray.base = point.position;
 //#end
     if transparency > 0.0 {
         let factor = materials[tile_material(point)].tint * transparency;
@@ -122,30 +153,32 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
         let material = materials[objects[at.point.object].material];
         let lit = shade(at.point, branch.ray);
         branch.total += at.t;
-        branch.total_error += at.t_error + U * branch.total; //~
-        add_shade(traced, branch, material.kept, lit);
+        branch.total_error += U * branch.total; //~
+        var ended = branch;
+        ended.total_error += at.t_error; //~
+        add_shade(traced, ended, material.kept, lit);
 //#if certified
-        if doubt | (branch.total_error > 0.01 * branch.total) | (branch.total < TOTAL_LEAST) {
+        if doubt | (ended.total_error > 0.01 * ended.total) | (ended.total < TOTAL_LEAST) {
             (*traced).verdict = UNDECIDED;
             break;
         }
 //#end
         // The rays that go on from here.
 //#if mirror
-        let mirror = mirror_branch(branch, at.point, material.specular);
+        let mirror = mirror_branch(branch, at, material.specular);
         var mirrors = any(mirror.weight > vec3f(0.0));
 //#else
         let mirrors = false;
 //#end
 //#if transparent
-        let through = through_branch(branch, at.point, material.transparency);
+        let through = through_branch(branch, at, material.transparency);
         var passes = any(through.weight > vec3f(0.0));
 //#else
         let passes = false;
 //#end
 //#if certified
         let short = MAX_PATH - branch.total;
-        let short_sure = abs(short) > branch.total_error + 2.0 * U * MAX_PATH;
+        let short_sure = abs(short) > ended.total_error + 2.0 * U * MAX_PATH;
         if doubt | ((mirrors | passes) & !short_sure) {
             // Whether the path ends here is not certain, or a weight is not known.
             (*traced).verdict = UNDECIDED;
@@ -234,5 +267,8 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
         at.point = locate_secondary(branch.ray, hit);
         at.t = hit.t;
         at.t_error = hit.error; //~
+//#if mirror
+        at.slip = mirror_slip(branch.ray, at); //~
+//#end
     }
 }

@@ -44,7 +44,7 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
 
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, ray: SecondaryRay) {
-    (*walk).pad = SECOND_ORDER * (ray.base_error + ray.dir_error * (ray.size + BVH_SIZE))
+    (*walk).pad = SECOND_ORDER * (ray.base_error + ray.start_error + ray.dir_error * (ray.size + BVH_SIZE))
         + 4.0 * U * (ray.size + BVH_SIZE);
 }
 //#end

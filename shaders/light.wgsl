@@ -68,31 +68,6 @@ fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
 //#end
 //#end
 }
-//#if glint
-
-// x to the power of n, a whole number below 1024.
-fn power(x: f32, n: u32) -> f32 {
-    var result = select(1.0, x, (n & 1u) != 0u);
-    var square = x * x;
-    result *= select(1.0, square, (n & 2u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 4u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 8u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 16u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 32u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 64u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 128u) != 0u);
-    square *= square;
-    result *= select(1.0, square, (n & 256u) != 0u);
-    square *= square;
-    return result * select(1.0, square, (n & 512u) != 0u);
-}
-//#end
 
 // What light number `number` brings to a point with diffuse reflectivity `diffuse`, seen by a ray.
 fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> Shade {
@@ -109,7 +84,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let inverse = inverseSqrt(max(toward_2, TINY_SQUARE));
     let distance = toward_2 * inverse;
     let d = toward * inverse;
-    let c = dot(d, point.normal);
+    var c = dot(d, point.normal);
 //#if certified
     let toward_error = point.error + U * (light.size + 2.0 * distance);
     if !(distance > 4.0 * toward_error) | (inverse > LIGHT_NEAREST) {
@@ -118,7 +93,13 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     }
     let d_error = 1.4 * toward_error * inverse + DIRECTION_ROUNDINGS * U;
     let distance_error = toward_error + DIRECTION_ROUNDINGS * U * distance;
-    let c_error = d_error + point.normal_error + DOT_ROUNDINGS * U;
+    var c_error = d_error + point.normal_error + DOT_ROUNDINGS * U;
+//#if low_light
+    // The height over the distance: of the point's error only what is along the way to the light counts.
+    let low = (bit & point.low_light) != 0u;
+    c = select(c, point.height * inverse, low);
+    c_error = select(c_error, abs(c) * (1.4 * distance_error * inverse + HEIGHT_ROUNDINGS * U), low);
+//#end
     if c < -c_error {
         return shade;
     }
@@ -145,7 +126,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#end
 //#end
 //#if certified
-    let way = SecondaryRay(point.position, d, point.error, d_error, point.size);
+    let way = SecondaryRay(point.position, d, point.error, d_error, 0.0, point.size);
     let blocked = shadow(way, Range(point.group, bit, 0.0, distance, 0.0, distance_error));
     sure &= blocked.sure;
 //#else
@@ -161,29 +142,20 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#if glint
     let material = materials[objects[point.object].material];
     if material.shininess > 0.0 {
-        let back = barrier(seen.base - point.position);
-        let back_2 = dot(back, back);
-        let back_inverse = inverseSqrt(max(back_2, TINY_SQUARE));
-        let half = barrier(back * back_inverse + d);
-        let half_2 = dot(half, half);
-        let half_inverse = inverseSqrt(max(half_2, TINY_SQUARE));
-        let cosine = dot(half, point.normal) * half_inverse;
 //#if certified
-        let back_error = seen.base_error + point.error + 2.0 * U * back_2 * back_inverse;
-        let half_error = 1.4 * back_error * back_inverse + d_error + (DIRECTION_ROUNDINGS + 4.0) * U;
-        let cosine_error = 1.4 * half_error * half_inverse + point.normal_error
-            + (DIRECTION_ROUNDINGS + DOT_ROUNDINGS) * U;
-        let near = (back_2 * back_inverse > 4.0 * back_error) & (half_2 * half_inverse > 4.0 * half_error);
-        doubt |= !near | (material.power == 0u);
-        if cosine > -cosine_error {
-            // The upper end of what the cosine may be, and all that lies below it as error.
-            let upper = clamp(cosine + cosine_error, TINY_COSINE, 1.0);
-            let glint = material.specular * light.emissivity * power(upper, material.power);
-            shade.color += glint;
-            let n = f32(material.power);
-            shade.error += glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
-        }
+        // The way back is where the ray came from.
+        let half = barrier(d - seen.dir);
+        let half_error = seen.dir_error + d_error + 2.0 * U;
+        let most = glint_power(half, half_error, point.normal, point.normal_error, material.shininess);
+        let glint = material.specular * light.emissivity * most.x;
+        shade.color += glint;
+        shade.error += glint * most.y;
 //#else
+        let back = seen.base - point.position;
+        let back_2 = dot(back, back);
+        let half = back * inverseSqrt(max(back_2, TINY_SQUARE)) + d;
+        let half_2 = dot(half, half);
+        let cosine = dot(half, point.normal) * inverseSqrt(max(half_2, TINY_SQUARE));
         if cosine > 0.0 {
             shade.color += material.specular * light.emissivity * pow(min(cosine, 1.0), material.shininess);
         }

@@ -77,8 +77,14 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let steep = (abs(along) > 2.0 * along_error) & (abs(t) < FARTHEST);
     let slope = abs(inverse) * (1.0001 + 2.0 * along_error * abs(inverse));
     let error = (ahead_error + abs(t) * along_error) * slope + 8.0 * U * abs(t);
-    var out = (steep & (t < -error)) | (plane.group == range.skip) | ((plane.lights_on_surface & range.light) != 0u);
-    let in = steep & (t > error) & !out;
+    let start = error + ray.start_error;
+    var out = (steep & (t < -start)) | (plane.group == range.skip) | ((plane.lights_on_surface & range.light) != 0u);
+//#if low_light
+    // The way to a light on the same side does not cross the plane, however near the light is.
+    let above = select(ahead, -ahead, plane.height > 0.0);
+    out |= ((plane.low_light & range.light) != 0u) & (above > ahead_error);
+//#end
+    let in = steep & (t > start) & !out;
     intersection.error = error;
     // A plane seen edge-on is met far away, if at all.
     intersection.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error,
@@ -87,7 +93,8 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     intersection.high = select(T_MAX, t + error, steep);
 //#end
     let position = (ray.base + t * ray.dir) * plane.axis_mask + plane.fixed_coordinate;
-    let position_error = ray.base_error + abs(t) * ray.dir_error + error + POSITION_ROUNDINGS * U * (ray.size + abs(t));
+    // The position stays on the plane, so that `error` is all that base and dir can move it by.
+    let position_error = error + POSITION_ROUNDINGS * U * (ray.size + abs(t));
     let below = plane.highest - position.z;
     out |= in & (below < -position_error);
     var inside = below > position_error;

@@ -5,7 +5,7 @@
 // The primary ray as one from anywhere.
 fn as_secondary_ray(ray: Ray) -> SecondaryRay {
 //#if certified
-    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0);
+    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0, 0.0);
 //#else
     return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length);
 //#end
@@ -69,6 +69,10 @@ fn complete(point: ptr<function, Point>) {
         (*point).normal = plane.normal;
         (*point).normal_error = 2.0 * U; //~
         (*point).position = (*point).position * plane.axis_mask + plane.fixed_coordinate;
+//#if low_light
+        (*point).low_light = plane.low_light; //~
+        (*point).height = plane.height; //~
+//#end
 //#if lights_on_surface
         (*point).lights_on_surface = plane.lights_on_surface;
 //#end
@@ -96,8 +100,8 @@ fn locate_secondary(ray: SecondaryRay, hit: SecondaryHit) -> Point {
     point.object = hit.object;
     point.position = barrier(ray.base + hit.t * ray.dir);
 //#if certified
-    point.error = SECOND_ORDER * (ray.base_error + hit.t * ray.dir_error + hit.error)
-        + POSITION_ROUNDINGS * U * (ray.size + hit.t);
+    // On a plane: what the line is off by moves the hit within the plane, by no more than `hit.error`.
+    point.error = hit.error + POSITION_ROUNDINGS * U * (ray.size + hit.t);
 //#end
     complete(&point);
 //#if sphere_beyond

@@ -126,8 +126,9 @@ fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Int
 //#if transparent
     intersection.high = select(approach.along + approach.off, t + error, disc > disc_error);
 //#end
-    var out = (disc < -disc_error) | (t < -error) | (sphere.group == range.skip);
-    intersection.hit = !out & (disc > disc_error) & (t > error);
+    let start = error + ray.start_error;
+    var out = (disc < -disc_error) | (t < -start) | (sphere.group == range.skip);
+    intersection.hit = !out & (disc > disc_error) & (t > start);
 //#if lights_on_surface
     // From outside, a light on the sphere is where the ray would enter it: at the light, not before; or where it
     // leaves.

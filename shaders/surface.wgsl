@@ -35,6 +35,11 @@ struct Point {
     normal_error: f32, //~
     group: u32,
 //#end
+//#if low_light
+    // The bit of the light whose height above the plane is told, and that height.
+    low_light: u32, //~
+    height: f32, //~
+//#end
 //#if lights_on_surface
     // Bit i: light i lies in the plane of the point.
     lights_on_surface: u32,

@@ -110,6 +110,9 @@ fn ray_trace(ray: Ray) -> Traced {
     next_hit.point = locate(ray, hit);
     next_hit.t = t;
     next_hit.t_error = t_error; //~
+//#if mirror
+    next_hit.slip = vec2f(next_hit.point.error, next_hit.point.error + t_error); //~
+//#end
     follow(&traced, as_secondary_ray(ray), next_hit);
 //#else
     let lit = shade(locate(ray, hit), as_secondary_ray(ray));

@@ -6,9 +6,12 @@ struct SecondaryRay {
     // Of unit length.
     dir: vec3f,
 //#if certified
-    // How far base and dir may be from the true ones.
+    // How far base may be from a point of the true ray's line (in the tree of rays, from the nearest), and dir from its
+    // direction.
     base_error: f32,
     dir_error: f32,
+    // How far that point may be from where the true ray starts.
+    start_error: f32,
     // |base.x| + |base.y| + |base.z|
     size: f32,
 //#end

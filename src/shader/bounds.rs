@@ -44,8 +44,6 @@ named! {
     WEIGHT_MOST = 127.0 + 4.0;
     /// What products that f32 flushes may take from a lit pixel's value, where 255 is a full byte.
     FLUSHED = 1.0 / (1_u64 << 26) as f64;
-    /// The cosine of a glint counts for at least this: a number that is divided by.
-    TINY_COSINE = 1.0 / (1_u64 << 40) as f64;
     /// Roundings of a dot product with a plane, of its sum with an offset.
     PLANE_ROUNDINGS = 6.0;
     /// Roundings of base + t·dir.
@@ -62,8 +60,20 @@ named! {
     DIRECTION_ROUNDINGS = 8.0;
     /// Roundings of a dot product of unit vectors.
     DOT_ROUNDINGS = 5.0;
+    /// Roundings of a height and its quotient by a distance, but for the distance's.
+    HEIGHT_ROUNDINGS = 2.0;
     /// Roundings of a mirrored direction.
     MIRROR_ROUNDINGS = 18.0;
+    /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
+    BOUNCE_ROUNDINGS = 30.0;
+    /// Shininess above this is left to the CPU.
+    MOST_SHININESS = (1_u64 << 20) as f64;
+    /// Roundings of the distance of two unit vectors, for a unit of it.
+    APART_ROUNDINGS = 9.0;
+    /// Roundings of a power, for a unit of its logarithm to base 2.
+    LOG_ROUNDINGS = 12.0;
+    /// The same, whatever its logarithm is; and those of the products that make a glint of it.
+    POWER_ROUNDINGS = 20.0;
     /// Roundings of an index of tiles, blocks or texels.
     INDEX_ROUNDINGS = 5.0;
     /// Roundings of the colours of `color_wheel`.

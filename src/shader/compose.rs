@@ -48,7 +48,7 @@ macro_rules! file {
 }
 
 /// The files of every entry point, in their order.
-const FILES: [File; 13] = [
+const FILES: [File; 14] = [
     file!("bindings.wgsl", |_| true),
     file!("camera.wgsl", |_| true),
     file!("jitter.wgsl", |f| f.contains(&Feature::Samples)
@@ -65,6 +65,8 @@ const FILES: [File; 13] = [
     file!("bvh.wgsl", |f| f.contains(&Feature::Bvh)),
     file!("surface.wgsl", |f| f.contains(&Feature::AnyObject)),
     file!("world.wgsl", |f| f.contains(&Feature::Lit)),
+    file!("glint.wgsl", |f| f.contains(&Feature::Glint)
+        && f.contains(&Feature::Certified)),
     file!("light.wgsl", |f| f.contains(&Feature::Lit)),
     file!("closest.wgsl", |f| f.contains(&Feature::AnyObject)),
     file!("point.wgsl", |f| f.contains(&Feature::AnyObject)),

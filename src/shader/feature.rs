@@ -121,6 +121,8 @@ features! {
     Cone = "cone",
     /// Some light lies in a plane or on a sphere.
     LightsOnSurface = "lights_on_surface",
+    /// Some light is so near to a plane that its height above it is told.
+    LowLight = "low_light",
     /// Rays from anywhere can hit rectangles.
     RectangleAnywhere = "rectangle_anywhere",
     /// Rays from anywhere go through a loop.

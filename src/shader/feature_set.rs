@@ -63,6 +63,8 @@ pub struct LitFeatures {
     pub cone: bool,
     /// Some light lies in a plane or on a sphere.
     pub lights_on_surface: bool,
+    /// Some light is next to a plane.
+    pub low_light: bool,
     /// There are planes, of either kind.
     pub planes: bool,
     /// There are rectangles.
@@ -146,6 +148,7 @@ impl FeatureSet {
                         .spheres
                         .iter()
                         .any(|sphere| sphere.lights_on_surface != 0),
+                low_light: lit.planes.iter().any(|plane| plane.height != 0.0),
                 planes: !lit.planes.is_empty(),
                 rectangles: lit.planes.iter().any(|plane| plane.bounded != 0),
                 spheres: !lit.spheres.is_empty(),
@@ -317,6 +320,7 @@ impl<'a> Conditions<'a> {
             Feature::Glint => light.glint,
             Feature::Cone => light.cone,
             Feature::LightsOnSurface => light.lights_on_surface,
+            Feature::LowLight => light.low_light,
             Feature::RectangleAnywhere => light.rectangles,
             Feature::WorldLoop => lit && loops && (light.planes || light.loose_spheres),
             Feature::WorldPlaneLoop => lit && loops && light.planes,

@@ -248,13 +248,13 @@ records! {
         #[factor = "colours and weights of rays are products of it"]
         diffuse: [f32; 3],
         /// Exponent of the glint, 0 for none.
-        #[any_size = "it is only compared with 0 where pixels are certified"]
+        #[any_size = "a large one is compared with `MOST_SHININESS`, and left to the CPU"]
         shininess: f32,
         /// Specular reflectivity.
         #[factor = "colours and weights of rays are products of it"]
         specular: [f32; 3],
-        /// The exponent if it is a whole number from 1 to 1023, else 0.
-        power: u32,
+        /// Nothing.
+        pad: Pad1,
         /// What tints light that goes through.
         #[factor = "colours and weights of rays are products of it"]
         tint: [f32; 3],
@@ -313,8 +313,10 @@ records! {
         highest: f32,
         /// Bound of the errors of the coordinates on the rectangle, but for what the position's error adds.
         sides_error: f32,
-        /// Nothing.
-        pad: Pad2,
+        /// The bit of the light that is so near to the plane that its height is told, or 0.
+        low_light: u32,
+        /// That light's height above the plane, to the normal's side.
+        height: f32,
     }
 
     /// A sphere for rays from anywhere; its center is from the viewpoint.

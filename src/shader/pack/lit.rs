@@ -4,7 +4,7 @@ use super::{Packed, f32x3, factor, factors};
 use crate::prepare::extent::Extent;
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{U, round_up, upper_bound};
+use crate::shader::bounds::{LARGEST, MOST_SHININESS, U, round_up, upper_bound};
 use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
@@ -84,19 +84,12 @@ fn material(material: &prepare::Material<Bounded>) -> Material {
         transparency: factor(material.transparency.value),
         diffuse: factors(material.diffuse),
         shininess: if material.mirror {
-            factor(material.shininess)
+            factor(material.shininess.min(2.0 * MOST_SHININESS))
         } else {
             0.0
         },
         specular: factors(material.specular),
-        power: if material.mirror
-            && material.shininess.fract() == 0.0
-            && material.shininess < 1024.0
-        {
-            material.shininess as u32
-        } else {
-            0
-        },
+        pad: Default::default(),
         tint: factors(material.tint),
         kept: factor((Bounded::exact(1.0) - material.transparency).value),
     }
@@ -129,6 +122,26 @@ fn bits(lights_on_surface: &[usize]) -> u32 {
         .sum()
 }
 
+/// Lights nearer to a plane than this share of what its offset and theirs are lose too many bits in f32.
+const LOW: f64 = 1.0 / 32.0;
+
+/// The bit and height of the light that is nearest to the plane, if it is too near for f32 to tell, and f64 can.
+fn low_light(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> Option<(u32, f32)> {
+    let heights = (0..32).zip(&world.lights).filter_map(|(number, light)| {
+        let at = light.location.dot(plane.normal);
+        let height = at - plane.offset;
+        let size = at.value.abs()
+            + plane.offset.value.abs()
+            + upper_bound(light.location.dot(light.location)).sqrt();
+        let low = height.value.abs() < LOW * size;
+        // The rounding to f32 is u/2.
+        let known = height.error < 0.25 * U * height.value.abs();
+        (low && known && height.value.abs() > 1.0 / LARGEST)
+            .then_some((1 << number, height.value as f32))
+    });
+    heights.min_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()))
+}
+
 fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> WorldPlane {
     let mut axis_mask = [1.0; 3];
     let mut fixed_coordinate = [0.0; 3];
@@ -147,6 +160,7 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         Extent::Unbounded => (0, [zero; 2], [none; 2], [none; 2]),
         Extent::Rectangle(r) => (1, r.rows, r.origin, r.dimensions),
     };
+    let (low_light, height) = low_light(world, plane).unwrap_or((0, 0.0));
     let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),
@@ -164,7 +178,8 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         bounded,
         highest,
         sides_error: round_up(8.0 * U * (larger_bound(origin) + larger_bound(dimensions))),
-        pad: Default::default(),
+        low_light,
+        height,
     }
 }
 

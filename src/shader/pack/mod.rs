@@ -342,8 +342,18 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
     let d = camera.distance.value;
     let offset = camera.offset.map(upper_bound);
     let parts = [0, 1].map(|i| upper_bound(camera.step[i]) * reach[i] + offset[i]);
-    // κ − 1 = Σ 2o/(√(d² + o²) − o): docs/NUMERICS.md.
-    let more = offset.map(|o| 2.0 * o / ((d * d + o * o).sqrt() - o));
+    // κ − 1: docs/NUMERICS.md. Only columns and rows for which X·step and the offset have opposite signs count.
+    let more = [0, 1].map(|i| {
+        let (o, first) = (offset[i], -f64::from(camera.anchor[i]));
+        let opposite = if camera.offset[i].value > 0.0 {
+            -first
+        } else {
+            f64::from(screen.pixels[i] - 1) + first
+        };
+        let most = (opposite + screen.margin).max(0.0) * upper_bound(camera.step[i]);
+        let worst = most.min((d * d + o * o).sqrt());
+        4.0 * worst * o / (d * d + (worst - o) * (worst - o))
+    });
     // Offsets that were rounded to f32 move W, whose length is at least d.
     let moved = camera.step.map(upper_bound).iter().sum::<f64>() * screen.offset_error();
     PackedCamera {

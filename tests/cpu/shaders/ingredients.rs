@@ -35,6 +35,7 @@ pub(super) enum Ingredient {
     Lamp,
     Spotlight,
     LampInFloor,
+    LampOverFloor,
     Mirror,
     Glass,
     Glint,
@@ -63,6 +64,7 @@ pub(super) fn ingredients() -> Vec<Ingredient> {
         Lamp,
         Spotlight,
         LampInFloor,
+        LampOverFloor,
         Mirror,
         Glass,
         Glint,
@@ -161,7 +163,7 @@ pub(super) fn objects(ingredient: Ingredient) -> Vec<Object> {
         Mirror => vec![of_material(1, floor(Surface::Plain))],
         Glass => vec![of_material(2, small(Surface::Plain))],
         Glint => vec![of_material(3, small(Surface::Plain))],
-        LampInFloor => vec![floor(Surface::Plain)],
+        LampInFloor | LampOverFloor => vec![floor(Surface::Plain)],
         Values | Fast | Lamp | Spotlight | Samples | CourseSamples => vec![],
     }
 }
@@ -199,6 +201,7 @@ fn lights(ingredient: Ingredient) -> Vec<Light> {
         // What materials do is seen by light alone.
         Lamp | Mirror | Glass | Glint => vec![light(6.0, None)],
         LampInFloor => vec![light(-1.0, None)],
+        LampOverFloor => vec![light(-0.999, None)],
         Spotlight => vec![light(
             6.0,
             Some(Cone {

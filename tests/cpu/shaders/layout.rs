@@ -28,7 +28,12 @@ fn modules() -> Vec<naga::Module> {
     let dark: Vec<_> = all
         .iter()
         .copied()
-        .filter(|i| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint))
+        .filter(|i| {
+            !matches!(
+                i,
+                Lamp | Spotlight | LampInFloor | LampOverFloor | Mirror | Glass | Glint
+            )
+        })
         .collect();
     let (packed, features) = packed(&[Plane, Lamp, Fast]);
     let moving = compose(&packed, &features.while_moving(), Entry::Picture);

@@ -45,8 +45,12 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     assert_valid(&wgsl, "all");
     // A scene that has everything but many objects has them as literals, and one without lights has other shapes.
     let few = |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres | Fast | Values);
-    let dark =
-        |i: &Ingredient| !matches!(i, Lamp | Spotlight | LampInFloor | Mirror | Glass | Glint);
+    let dark = |i: &Ingredient| {
+        !matches!(
+            i,
+            Lamp | Spotlight | LampInFloor | LampOverFloor | Mirror | Glass | Glint
+        )
+    };
     let without_many: Vec<_> = all.iter().copied().filter(few).collect();
     let (wgsl, few_features) = composed(&without_many);
     assert_valid(&wgsl, "all, unrolled");

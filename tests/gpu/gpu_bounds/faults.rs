@@ -5,8 +5,8 @@ use plumb::shader::pack::Packed;
 
 use super::primary::SampledPicture;
 use super::support::{BoundStatistics, with_constant};
-use super::surfaces;
 use super::world::{self, RayErrors, World};
+use super::{branches, surfaces};
 
 /// Operands for each fault.
 const COUNT: usize = 1 << 16;
@@ -48,6 +48,15 @@ pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
         ("ROOT_ROUNDINGS", spheres("ROOT_ROUNDINGS")),
         ("NORMAL_ROUNDINGS", spheres("NORMAL_ROUNDINGS")),
     ];
+    let bounced = branches::branches(
+        gpu,
+        &world,
+        &zero("BOUNCE_ROUNDINGS"),
+        RayErrors::Exact,
+        COUNT,
+        ["BOUNCE_ROUNDINGS"; 4],
+    );
+    found.push(("BOUNCE_ROUNDINGS", total(&bounced)));
     let wgsl = zero("INDEX_ROUNDINGS");
     found.push((
         "INDEX_ROUNDINGS in tiles",
@@ -60,10 +69,17 @@ pub(crate) fn running(gpu: &Gpu) -> Vec<(&'static str, usize)> {
         "WHEEL_ROUNDINGS",
         total(&surfaces::wheel(gpu, &zero("WHEEL_ROUNDINGS"), COUNT)),
     ));
-    found.push((
-        "U in the power",
-        total(&surfaces::glint(gpu, &zero("U"), COUNT)),
-    ));
+    for (name, constant) in [
+        ("U in a glint", "U"),
+        ("APART_ROUNDINGS", "APART_ROUNDINGS"),
+    ] {
+        let seen = surfaces::glint(gpu, &zero(constant), COUNT);
+        found.push((name, total(&seen)));
+    }
+    for name in ["LOG_ROUNDINGS", "POWER_ROUNDINGS"] {
+        let seen = surfaces::power(gpu, &zero(name), COUNT);
+        found.push((name, seen.violations()));
+    }
     let mut world = World::many();
     for plane in &mut world.packed.tiled_planes {
         plane.errors = [0.0; 2];

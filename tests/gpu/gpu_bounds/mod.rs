@@ -7,6 +7,7 @@
 
 #![allow(clippy::print_stdout, reason = "the tables, with --nocapture")]
 
+mod branches;
 mod faults;
 mod lanes;
 mod pictures;
@@ -36,6 +37,8 @@ const TIGHT: f64 = 1.0 / 25.0;
 const TIGHT_LITERAL: f64 = 1.0 / 40.0;
 /// Where rays, points or places are off by all that they may be, bounds are nearly reached.
 const TIGHT_OFF: f64 = 0.8;
+/// The same after several mirrors and panes, each of which may be off its own way.
+const TIGHT_BOUNCED: f64 = 0.5;
 
 #[test]
 fn rays_from_anywhere() {
@@ -91,6 +94,32 @@ fn rays_from_anywhere() {
 }
 
 #[test]
+fn rays_after_mirrors_and_panes() {
+    let gpu = support::open();
+    let world = World::many();
+    let branches =
+        |errors, names| branches::branches(&gpu, &world, &world.wgsl, errors, MANY / 2, names);
+    let exact = [
+        "line after bounces, exact ray",
+        "direction after bounces, exact ray",
+        "start after bounces, exact ray",
+        "length after bounces, exact ray",
+    ];
+    for seen in branches(RayErrors::Exact, exact) {
+        seen.judge(DECIDED, TIGHT);
+    }
+    let off = [
+        "line after bounces, ray off",
+        "direction after bounces, ray off",
+        "start after bounces, ray off",
+        "length after bounces, ray off",
+    ];
+    for seen in branches(RayErrors::Off, off) {
+        seen.judge(10_000, TIGHT_BOUNCED);
+    }
+}
+
+#[test]
 fn primary_rays() {
     let gpu = support::open();
     let mut camera =
@@ -118,6 +147,7 @@ fn at_a_hit_point() {
         surfaces::wheel(&gpu, wgsl, MANY),
         surfaces::glint(&gpu, wgsl, MANY),
     ];
+    surfaces::power(&gpu, wgsl, MANY).judge(DECIDED, TIGHT);
     pairs.extend(surfaces::blocks(&gpu, &world, wgsl, MANY));
     for [exact, off] in pairs {
         exact.judge(DECIDED, TIGHT);
@@ -137,6 +167,7 @@ const COVERED: &[&str] = &[
     "DISC_ROUNDINGS",
     "ROOT_ROUNDINGS",
     "NORMAL_ROUNDINGS",
+    "APART_ROUNDINGS",
     "a pplane's index_error",
     "a sphere's along_error",
     "a sphere's form_error",

@@ -259,49 +259,89 @@ pub(crate) fn wheel(gpu: &Gpu, wgsl: &str, count: usize) -> [BoundStatistics; 2]
     seen
 }
 
-/// The glint's power of a cosine that is off by as much as it may be, or nearly exact.
+/// Powers of 1 − y by themselves.
+pub(crate) fn power(gpu: &Gpu, wgsl: &str, count: usize) -> BoundStatistics {
+    let (mut rng, mut items) = (Rng(10), Vec::new());
+    let truth: Vec<_> = (0..count)
+        .map(|_| {
+            let y = match rng.below(3) {
+                0 => rng.uniform(0.0, 1.0),
+                1 => 1.0 - rng.log(-7.0, 0.0),
+                _ => rng.log(-12.0, 0.0),
+            } as f32;
+            let y = y.min(1.0_f32.next_down());
+            // log₂ of the result, most often.
+            let log = (-f64::from(y)).ln_1p();
+            let n = (rng.log(-2.0, 2.0) / -log).clamp(1e-3, 1e6) as f32;
+            items.extend([y, n, 0.0, 0.0]);
+            (f64::from(n) * log).exp()
+        })
+        .collect();
+    let body = "answers[i] = vec4f(power(items[i].x, items[i].y), 0.0, 0.0);";
+    let answers = run(gpu, wgsl, body, &items, &[], count, 1);
+    let mut seen = BoundStatistics::new("power");
+    for (answer, truth) in answers.iter().zip(truth) {
+        let [value, share] = [answer[0], answer[1]].map(f64::from);
+        if share < 1.0 {
+            seen.error((value - truth).abs(), value * share);
+        } else {
+            seen.must((0.0..=value * 1.001).contains(&truth));
+        }
+    }
+    seen
+}
+
+/// The glint's power of the cosine between two directions that are off by as much as they may be, or are exact.
 pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [BoundStatistics; 2] {
-    assert_has(
-        wgsl,
-        &[
-            "let upper = min(cosine + cosine_error, 1.0);",
-            "shade.error += glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);",
-        ],
-    );
     let (mut rng, mut items) = (Rng(9), Vec::new());
     let truth: Vec<_> = (0..count)
         .map(|i| {
-            let n = rng.log(0.0, 3.0).min(1023.0) as u32;
-            let cosine = if rng.chance(0.5) {
-                1.0 - rng.log(-8.0, 0.0)
-            } else {
-                rng.uniform(-0.01, 1.0)
+            let n = match rng.below(4) {
+                0 => rng.log(0.0, 3.0).floor(),
+                1 => rng.log(3.0, 6.0),
+                _ => rng.log(-1.0, 3.0),
             } as f32;
-            let error = rng.log(-7.0, -2.0) as f32 * if i % 2 == 0 { 0.0 } else { 1.0 };
-            items.extend([cosine, error, f32::from_bits(n), 0.0]);
-            let way = rng.sign();
-            let cosine = f64::from(cosine) + way * f64::from(error);
-            cosine.clamp(0.0, 1.0).powi(n as i32)
+            let normal = rng.unit();
+            let across = normal.cross(rng.unit()).normalize();
+            // Where the power is neither 1 nor next to 0, as a rule.
+            let angle = match rng.below(8) {
+                0 => rng.uniform(0.0, 1.6),
+                _ => (rng.uniform(0.0, 6.0) / f64::from(n)).sqrt().min(1.6),
+            };
+            let length = rng.uniform(0.2, 2.0);
+            let half = (normal * angle.cos() + across * angle.sin()) * length;
+            let is_off = if i % 2 == 0 { 0.0 } else { 1.0 };
+            let errors = [0; 2].map(|_| rng.log(-7.0, -2.0));
+            let mut tell = |truth: DVec3, error: f64| {
+                let way = [rng.unit(), across * rng.sign()];
+                let off = truth + way[rng.below(2)] * error * is_off;
+                let (told, near) = rounded(off);
+                items.extend(told);
+                items.push(round_up((near - truth).length()));
+            };
+            tell(half, errors[0] * length);
+            tell(normal, errors[1]);
+            items.extend([n, 0.0, 0.0, 0.0]);
+            let cosine = half.dot(normal) / length;
+            cosine.max(0.0).powf(f64::from(n))
         })
         .collect();
     let body = "
-    let cosine = items[i].x;
-    let cosine_error = items[i].y;
-    let whole = bitcast<u32>(items[i].z);
-    let upper = min(cosine + cosine_error, 1.0);
-    let glint = power(upper, whole);
-    let n = f32(whole);
-    let error = glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
-    answers[i] = vec4f(glint, error, select(0.0, 1.0, cosine > -cosine_error), 0.0);";
+    let half = items[3u * i];
+    let normal = items[3u * i + 1u];
+    let most = glint_power(half.xyz, half.w, normal.xyz, normal.w, items[3u * i + 2u].x);
+    answers[i] = vec4f(most, select(0.0, 1.0, doubt), 0.0);";
     let answers = run(gpu, wgsl, body, &items, &[], count, 1);
-    let mut seen = ["power, exact cosine", "power, cosine is off"].map(BoundStatistics::new);
+    let mut seen =
+        ["power, exact directions", "power, directions are off"].map(BoundStatistics::new);
     for (i, (answer, truth)) in answers.iter().zip(truth).enumerate() {
-        let [glint, error, counts, _] = answer.map(f64::from);
-        if counts == 0.0 {
-            seen[i % 2].must(truth == 0.0);
-        } else if truth > 1e-30 {
-            // What is smaller may be flushed, and is next to nothing beside a byte's step.
-            seen[i % 2].error((glint - truth).abs(), error);
+        let [glint, share, doubt, _] = answer.map(f64::from);
+        if doubt == 1.0 {
+            seen[i % 2].decision(false, true, false);
+        } else if share < 1.0 {
+            seen[i % 2].error((glint - truth).abs(), glint * share);
+        } else {
+            seen[i % 2].must((0.0..=glint * (1.0 + share)).contains(&truth));
         }
     }
     seen

@@ -156,15 +156,31 @@ pub(crate) fn seen_from_viewpoint(point: DVec3) -> DVec3 {
 }
 
 /// Planes' numbers, as they truly are.
-struct TruePlane {
-    normal: DVec3,
+pub(crate) struct TruePlane {
+    pub(crate) normal: DVec3,
     /// From the viewpoint.
     point: DVec3,
     /// Directions of the sides, and their lengths.
     sides: Option<([DVec3; 2], DVec2)>,
 }
 
-fn true_plane(shape: &Shape) -> TruePlane {
+impl TruePlane {
+    /// How far along the ray it is met, if it is.
+    pub(crate) fn meets(&self, base: DVec3, dir: DVec3) -> Option<f64> {
+        let t = self.normal.dot(self.point - base) / self.normal.dot(dir);
+        let hit = base + t * dir;
+        let axis = self.normal.abs().max_element() == 1.0 && self.normal.z != 0.0;
+        let inside = self.sides.is_none_or(|(rows, lengths)| {
+            let from = hit - self.point;
+            (0.0..=lengths.x).contains(&from.dot(rows[0]))
+                && (0.0..=lengths.y).contains(&from.dot(rows[1]))
+        });
+        let below = axis || hit.z <= -VIEWPOINT.z / UNIT;
+        (t > 0.0 && inside && below).then_some(t)
+    }
+}
+
+pub(crate) fn true_plane(shape: &Shape) -> TruePlane {
     let Shape::Plane {
         normal,
         point,
@@ -195,7 +211,13 @@ pub(crate) enum RayErrors {
     Wild,
 }
 
-fn ray(rng: &mut Rng, errors: RayErrors, base: DVec3, dir: DVec3, hint: DVec3) -> TrueRay {
+pub(crate) fn ray(
+    rng: &mut Rng,
+    errors: RayErrors,
+    base: DVec3,
+    dir: DVec3,
+    hint: DVec3,
+) -> TrueRay {
     match errors {
         RayErrors::Exact => TrueRay::exact(base, dir),
         RayErrors::Off | RayErrors::Wild => {
@@ -237,7 +259,7 @@ const CALL: &str = "
     let b = items[3u * i + 1u];
     let c = items[3u * i + 2u];
     let record = bitcast<u32>(a.w);
-    let ray = SecondaryRay(a.xyz, b.xyz, b.w, c.x, c.y);
+    let ray = SecondaryRay(a.xyz, b.xyz, b.w, c.x, 0.0, c.y);
     let range = Range(NOTHING, 0u, 0.0, T_MAX, 0.0, 0.0);
 ";
 
@@ -279,7 +301,7 @@ fn place(seen: &mut BoundStatistics, answer: [f32; 4], truth: DVec3) {
 }
 
 /// What the shader makes a point of an intersection with.
-fn inputs(world: &World) -> [(u32, &[u8]); 3] {
+pub(crate) fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     let lit = world.packed.lit.as_ref().unwrap();
     [
         (2, bytemuck::cast_slice(&lit.objects)),
@@ -322,16 +344,9 @@ pub(crate) fn planes(
     for (i, ray) in rays.iter().enumerate() {
         let plane = &truth[i % records.len()];
         let t = plane.normal.dot(plane.point - ray.base) / plane.normal.dot(ray.dir);
-        let hit = ray.base + t * ray.dir;
-        let axis = plane.normal.abs().max_element() == 1.0 && plane.normal.z != 0.0;
-        let inside = plane.sides.is_none_or(|(rows, lengths)| {
-            let from = hit - plane.point;
-            (0.0..=lengths.x).contains(&from.dot(rows[0]))
-                && (0.0..=lengths.y).contains(&from.dot(rows[1]))
-        });
-        let below = axis || hit.z <= -VIEWPOINT.z / UNIT;
-        if judge(&mut seen, &answers[4 * i..], t > 0.0 && inside && below, t) {
-            place(&mut points, answers[4 * i + 3], hit);
+        let hits = plane.meets(ray.base, ray.dir).is_some();
+        if judge(&mut seen, &answers[4 * i..], hits, t) {
+            place(&mut points, answers[4 * i + 3], ray.base + t * ray.dir);
         }
     }
     [seen, points]
