@@ -88,37 +88,48 @@ fn positive(value: f64) -> f32 {
 }
 
 fn material(material: &prepare::Material<Bounded>) -> Material {
+    // Which channels a secondary ray changes is asked by the CPU alone.
+    let prepare::Material {
+        ambient,
+        diffuse,
+        specular,
+        shininess,
+        transparency,
+        tint,
+        mirrored: _,
+        passed: _,
+        transparent: _,
+        mirror,
+    } = *material;
     Material {
-        ambient: f32x3(material.ambient),
-        transparency: positive(material.transparency.value),
-        diffuse: f32x3(material.diffuse),
-        shininess: if material.mirror {
-            positive(material.shininess)
-        } else {
-            0.0
-        },
-        specular: f32x3(material.specular),
-        power: if material.mirror
-            && material.shininess.fract() == 0.0
-            && material.shininess < 1024.0
-        {
-            material.shininess as u32
+        ambient: f32x3(ambient),
+        transparency: positive(transparency.value),
+        diffuse: f32x3(diffuse),
+        shininess: if mirror { positive(shininess) } else { 0.0 },
+        specular: f32x3(specular),
+        power: if mirror && shininess.fract() == 0.0 && shininess < 1024.0 {
+            shininess as u32
         } else {
             0
         },
-        tint: f32x3(material.tint),
-        kept: (Bounded::exact(1.0) - material.transparency).value as f32,
+        tint: f32x3(tint),
+        kept: (Bounded::exact(1.0) - transparency).value as f32,
     }
 }
 
 fn light(light: &prepare::Light<Bounded>) -> Light {
+    let prepare::Light {
+        location,
+        emissivity,
+        cone,
+    } = *light;
     let zero = V3::exact(glam::DVec3::ZERO);
-    let (axis, cosine) = light.cone.unwrap_or((zero, Bounded::exact(-2.0)));
+    let (axis, cosine) = cone.unwrap_or((zero, Bounded::exact(-2.0)));
     Light {
-        location: f32x3(light.location),
+        location: f32x3(location),
         cosine: cosine.value as f32,
-        emissivity: f32x3(light.emissivity),
-        size: size(light.location),
+        emissivity: f32x3(emissivity),
+        size: size(location),
         axis: f32x3(axis),
         pad: Default::default(),
     }
