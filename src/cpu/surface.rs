@@ -21,7 +21,7 @@ impl<R: Real> PlanePoint<R> for PlaneHit<'_, R> {
         self.plane.index[axis].odd(self.position.axis(axis))
     }
 
-    fn from_point(&self) -> [R; 2] {
+    fn offset_from_point(&self) -> [R; 2] {
         [
             self.plane.from_point[0].at(self.position.x),
             self.plane.from_point[1].at(self.position.y),

@@ -34,8 +34,16 @@ pub struct Material<R> {
 impl<R: Real> Material<R> {
     /// Prepares a material.
     pub fn new(material: &scene::Material) -> Self {
-        let diffuse = V3::<R>::exact(material.diffuse);
-        let largest = material.diffuse.max_element();
+        let scene::Material {
+            name: _,
+            ambient,
+            diffuse: color,
+            specular,
+            shininess,
+            transparency,
+        } = *material;
+        let diffuse = V3::<R>::exact(color);
+        let largest = color.max_element();
         let one = R::exact(1.0);
         let tint = if largest > 0.0 {
             let by = R::exact(largest);
@@ -44,19 +52,16 @@ impl<R: Real> Material<R> {
             V3::new(one, one, one)
         };
         Self {
-            ambient: V3::exact(material.ambient),
+            ambient: V3::exact(ambient),
             diffuse,
-            specular: V3::exact(material.specular),
-            shininess: material.shininess,
-            transparency: R::exact(material.transparency),
+            specular: V3::exact(specular),
+            shininess,
+            transparency: R::exact(transparency),
             tint,
-            mirrored: material.specular.to_array().map(|c| c > 0.0),
-            passed: material
-                .diffuse
-                .to_array()
-                .map(|c| c > 0.0 || largest <= 0.0),
-            transparent: material.transparency != 0.0,
-            mirror: material.specular.max_element() > 0.0,
+            mirrored: specular.to_array().map(|c| c > 0.0),
+            passed: color.to_array().map(|c| c > 0.0 || largest <= 0.0),
+            transparent: transparency != 0.0,
+            mirror: specular.max_element() > 0.0,
         }
     }
 }
@@ -77,17 +82,23 @@ pub struct Light<R> {
 impl<R: Real> Light<R> {
     /// Prepares a light.
     pub fn new(viewpoint: V3<R>, scale: i32, light: &scene::Light) -> Self {
+        let scene::Light {
+            name: _,
+            location,
+            emissivity,
+            cone,
+        } = *light;
         let unit = R::exact(two_to(-scale));
-        let location = V3::exact(light.location);
-        let cone = light.cone.map(|cone| {
-            let axis = V3::exact(cone.point) - location;
-            let axis = of_size_one(axis, cone.point - light.location);
-            (axis.unit(), R::cos_degrees(cone.theta))
+        let at = location;
+        let location = V3::exact(at);
+        let narrow = cone.and_then(|cone| R::versine_degrees(cone.theta));
+        let cone = cone.map(|scene::Cone { point, theta }| {
+            let axis = of_size_one(V3::exact(point) - location, point - at);
+            (axis.unit(), R::cos_degrees(theta))
         });
-        let narrow = light.cone.and_then(|cone| R::versine_degrees(cone.theta));
         Self {
             location: (location - viewpoint) * unit,
-            emissivity: V3::exact(light.emissivity),
+            emissivity: V3::exact(emissivity),
             cone,
             narrow,
         }

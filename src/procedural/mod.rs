@@ -27,7 +27,7 @@ pub trait PlanePoint<R: Real> {
     fn odd(&self, axis: usize) -> Result<u32, Undecided>;
 
     /// Components x and y of H − point, in world units.
-    fn from_point(&self) -> [R; 2];
+    fn offset_from_point(&self) -> [R; 2];
 }
 
 /// What a procedural sphere's shader is told about the hit.

@@ -5,7 +5,7 @@ use crate::real::{Real, Undecided, V3};
 
 /// 6·(1 + cos(2θ + φ)) for each channel.
 pub(super) fn pplane_1_angle<R: Real>(at: &impl PlanePoint<R>) -> Result<V3<R>, Undecided> {
-    let [x, y] = at.from_point();
+    let [x, y] = at.offset_from_point();
     Ok(color_wheel(x, y)? * R::exact(6.0))
 }
 

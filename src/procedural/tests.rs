@@ -20,16 +20,18 @@ impl PlanePoint<f64> for Told {
         Ok(self.odd[axis])
     }
 
-    fn from_point(&self) -> [f64; 2] {
+    fn offset_from_point(&self) -> [f64; 2] {
         self.from_point
     }
 }
 
-/// The brightest channel that a shader gives at hits of all kinds.
+/// The brightest channel that a shader gives at hits of all kinds: at all angles around the point, near and far.
 fn found(family: Family, shader: u32, ambient: f64) -> f64 {
     let mut brightest: f64 = 0.0;
-    for i in 0..3600_u32 {
+    let distances = [0.0, 1e-6, 0.1, 1.0, 10.0, 1e6];
+    for (i, distance) in (0..3600_u32).flat_map(|i| distances.map(|distance| (i, distance))) {
         let (y, x) = (f64::from(i) * 0.1_f64.to_radians()).sin_cos();
+        let (x, y) = (distance * x, distance * y);
         let odd = [i & 1, i >> 1 & 1, i >> 2 & 1];
         let color = match family {
             Family::Pplane => pplane(

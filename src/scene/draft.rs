@@ -2,7 +2,8 @@
 //!
 //! The rows of the `table` say which field of a [`Draft`] an attribute goes to; an [`Assembly`] turns a
 //! finished draft into the data model. The listing goes the other way: from the model to a draft, to print row by row.
-//! So this is the last step of text → lex → parse → [`Scene`].
+//! So this is the last step of text → lex → parse → [`Scene`]. On the way back the model is taken apart field by field,
+//! here and wherever it is read as a whole, so that the compiler names each place that a new field has to reach.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -220,24 +221,38 @@ impl Draft {
 
     /// A camera, to list or to check.
     pub(super) fn of_camera(camera: &Camera) -> Self {
+        let Camera {
+            name,
+            pixeldim,
+            worlddim,
+            viewpoint,
+        } = camera;
         Self {
-            name: camera.name.clone(),
-            pixeldim: camera.pixeldim.map(f64::from),
-            worlddim: camera.worlddim.to_array(),
-            viewpoint: camera.viewpoint.to_array(),
+            name: name.clone(),
+            pixeldim: pixeldim.map(f64::from),
+            worlddim: worlddim.to_array(),
+            viewpoint: viewpoint.to_array(),
             ..Self::default()
         }
     }
 
     /// A material, to list or to check.
     pub(super) fn of_material(material: &Material) -> Self {
+        let Material {
+            name,
+            ambient,
+            diffuse,
+            specular,
+            shininess,
+            transparency,
+        } = material;
         Self {
-            name: material.name.clone(),
-            ambient: material.ambient.to_array(),
-            diffuse: material.diffuse.to_array(),
-            specular: material.specular.to_array(),
-            shininess: [material.shininess],
-            transparency: [material.transparency],
+            name: name.clone(),
+            ambient: ambient.to_array(),
+            diffuse: diffuse.to_array(),
+            specular: specular.to_array(),
+            shininess: [*shininess],
+            transparency: [*transparency],
             ..Self::default()
         }
     }
@@ -263,27 +278,38 @@ impl Draft {
 
     /// A light, to list or to check, and its kind.
     pub(super) fn of_light(light: &Light) -> (EntityKind, Self) {
+        let Light {
+            name,
+            location,
+            emissivity,
+            cone,
+        } = light;
         let mut draft = Self {
-            name: light.name.clone(),
-            location: light.location.to_array(),
-            emissivity: light.emissivity.to_array(),
+            name: name.clone(),
+            location: location.to_array(),
+            emissivity: emissivity.to_array(),
             ..Self::default()
         };
-        if let Some(cone) = light.cone {
-            draft.point = cone.point.to_array();
-            draft.theta = [cone.theta];
+        if let Some(Cone { point, theta }) = *cone {
+            (draft.point, draft.theta) = (point.to_array(), [theta]);
         }
         (light.kind(), draft)
     }
 
     /// An object, to list or to check, and its class.
     pub(super) fn of_object(object: &Object) -> (EntityKind, Self) {
+        let Object {
+            name,
+            material,
+            shape,
+            surface,
+        } = object;
         let mut draft = Self {
-            name: object.name.clone(),
-            material: object.material,
+            name: name.clone(),
+            material: *material,
             ..Self::default()
         };
-        match object.shape {
+        match *shape {
             Shape::Sphere { center, radius } => {
                 (draft.center, draft.radius) = (center.to_array(), [radius]);
             }
@@ -295,14 +321,14 @@ impl Draft {
                 (draft.normal, draft.point) = (normal.to_array(), point.to_array());
                 match extent {
                     Extent::Unbounded => {}
-                    Extent::Rectangle(rectangle) => {
-                        draft.xdir = Some(rectangle.xdir.to_array());
-                        draft.dimension = rectangle.dimensions.to_array();
+                    Extent::Rectangle(Rectangle { xdir, dimensions }) => {
+                        draft.xdir = Some(xdir.to_array());
+                        draft.dimension = dimensions.to_array();
                     }
                 }
             }
         }
-        match object.surface {
+        match *surface {
             Surface::Plain => {}
             Surface::Procedural { shader } => draft.shader = [f64::from(shader)],
             Surface::Tiled {

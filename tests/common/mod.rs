@@ -4,8 +4,9 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use plumb::render::{Backend, Report, Settings, render};
-use plumb::scene::{Scene, load};
+use plumb::scene::{Light, Scene, load};
 
 /// The folder `scenes/`.
 pub(crate) fn scenes() -> PathBuf {
@@ -44,6 +45,16 @@ pub(crate) fn picture(scene: &Scene, settings: &Settings) -> (Vec<u8>, Report) {
     })
     .unwrap_or_else(|error| panic!("{error}"));
     (rgb, report)
+}
+
+/// A white light; the only one that tests make of its fields, so that another field is given a value here alone.
+pub(crate) fn light(location: DVec3) -> Light {
+    Light {
+        name: "l".into(),
+        location,
+        emissivity: DVec3::ONE,
+        cone: None,
+    }
 }
 
 /// Settings for one backend.

@@ -5,7 +5,7 @@ use plumb::gpu::adapters;
 use plumb::render::{Backend, SamplePattern, Settings, render};
 use plumb::scene::{Camera, Extent, Light, Material, Object, Scene, Shape, Surface};
 
-use crate::common::{on, picture};
+use crate::common::{light, on, picture};
 
 fn scene(pixeldim: [u32; 2], objects: Vec<Object>) -> Scene {
     let material = |name: &str, ambient| Material {
@@ -116,10 +116,8 @@ fn a_shadow_ray_that_takes_too_long_is_handed_to_the_cpu() {
     let mut scene = scene([1, 1], objects);
     let location = DVec3::new(1.0, 1.0, 2e5);
     scene.lights.push(Light {
-        name: "sun".into(),
-        location,
         emissivity: DVec3::splat(1e5),
-        cone: None,
+        ..light(location)
     });
     let (gpu, report) = picture(&scene, &on(Backend::Gpu));
     assert_eq!(report.refined, 1);
@@ -220,10 +218,8 @@ fn rows_alone_are_rows_of_the_whole() {
         vec![wall(-4.0, 1), ball(DVec3::new(1.0, 1.0, -3.0), 0.7, 1)],
     );
     scene.lights.push(Light {
-        name: "lamp".into(),
-        location: DVec3::new(0.0, 2.0, 0.0),
         emissivity: DVec3::splat(0.5),
-        cone: None,
+        ..light(DVec3::new(0.0, 2.0, 0.0))
     });
     for backend in [Backend::Gpu, Backend::Cpu] {
         for (samples, jitter) in [
@@ -297,12 +293,7 @@ fn spheres_that_stand_twice_are_seen_once() {
                 .collect(),
         )
     };
-    let lamp = Light {
-        name: "lamp".into(),
-        location: DVec3::new(1.0, 1.5, 2.0),
-        emissivity: DVec3::ONE,
-        cone: None,
-    };
+    let lamp = light(DVec3::new(1.0, 1.5, 2.0));
     for lights in [vec![], vec![lamp]] {
         let [once, twice] = [1, 2].map(|times| Scene {
             lights: lights.clone(),

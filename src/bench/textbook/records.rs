@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 
-use crate::scene::{Extent, Scene, Shape, Surface, TextureMode};
+use crate::scene::{self, Extent, Scene, Shape, Surface, TextureMode};
 
 /// An object, as the shader has it.
 #[repr(C)]
@@ -273,20 +273,25 @@ impl Pack<'_> {
     }
 
     fn light(&self, index: usize) -> Light {
-        let light = &self.scene.lights[index];
+        let scene::Light {
+            name: _,
+            location,
+            emissivity,
+            cone,
+        } = self.scene.lights[index];
         let mut record = Light {
-            location: f32s(light.location - self.view),
-            emissivity: f32s(light.emissivity),
+            location: f32s(location - self.view),
+            emissivity: f32s(emissivity),
             theta: if self.prepared { -2.0 } else { 0.0 },
             ..Light::zeroed()
         };
-        if let Some(cone) = light.cone {
+        if let Some(scene::Cone { point, theta }) = cone {
             if self.prepared {
-                record.theta = cone.theta.to_radians().cos() as f32;
-                record.point = f32s((cone.point - light.location).normalize());
+                record.theta = theta.to_radians().cos() as f32;
+                record.point = f32s((point - location).normalize());
             } else {
-                record.theta = cone.theta as f32;
-                record.point = f32s(cone.point);
+                record.theta = theta as f32;
+                record.point = f32s(point);
             }
         }
         record

@@ -79,30 +79,50 @@ impl Lit {
 }
 
 fn material(material: &prepare::Material<Bounded>) -> Material {
+    // Which channels a secondary ray changes is asked by the CPU alone.
+    let prepare::Material {
+        ambient,
+        diffuse,
+        specular,
+        shininess,
+        transparency,
+        tint,
+        mirrored: _,
+        passed: _,
+        transparent: _,
+        mirror,
+    } = *material;
     Material {
-        ambient: factors(material.ambient),
-        transparency: factor(material.transparency.value),
-        diffuse: factors(material.diffuse),
-        shininess: if material.mirror {
-            factor(material.shininess.min(2.0 * MOST_SHININESS))
+        ambient: factors(ambient),
+        transparency: factor(transparency.value),
+        diffuse: factors(diffuse),
+        shininess: if mirror {
+            factor(shininess.min(2.0 * MOST_SHININESS))
         } else {
             0.0
         },
-        specular: factors(material.specular),
+        specular: factors(specular),
         pad: Default::default(),
-        tint: factors(material.tint),
-        kept: factor((Bounded::exact(1.0) - material.transparency).value),
+        tint: factors(tint),
+        kept: factor((Bounded::exact(1.0) - transparency).value),
     }
 }
 
 fn light(light: &prepare::Light<Bounded>) -> Light {
+    let prepare::Light {
+        location,
+        emissivity,
+        cone,
+        // Narrow cones are told by their sines on the CPU alone.
+        narrow: _,
+    } = *light;
     let zero = V3::exact(glam::DVec3::ZERO);
-    let (axis, cosine) = light.cone.unwrap_or((zero, Bounded::exact(-2.0)));
+    let (axis, cosine) = cone.unwrap_or((zero, Bounded::exact(-2.0)));
     Light {
-        location: f32x3(light.location),
+        location: f32x3(location),
         cosine: cosine.value as f32,
-        emissivity: factors(light.emissivity),
-        size: size(light.location),
+        emissivity: factors(emissivity),
+        size: size(location),
         axis: f32x3(axis),
         pad: Default::default(),
     }

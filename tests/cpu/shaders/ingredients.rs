@@ -13,6 +13,8 @@ use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
 
+use crate::common::light;
+
 /// Something that a scene may have and a shader then needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ingredient {
@@ -192,10 +194,8 @@ fn rectangle(surface: Surface) -> Object {
 
 fn lights(ingredient: Ingredient) -> Vec<Light> {
     let light = |y, cone| Light {
-        name: "l".into(),
-        location: DVec3::new(4.0, y, 2.0),
-        emissivity: DVec3::ONE,
         cone,
+        ..light(DVec3::new(4.0, y, 2.0))
     };
     match ingredient {
         // What materials do is seen by light alone.

@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use plumb::procedural::{self, Family};
 use plumb::render::{Precision, Settings};
 use plumb::scene::Scene;
 use plumb::shader::compose::{Entry, compose};
@@ -17,6 +18,17 @@ use plumb::shader::pack::Packed;
 use crate::common;
 use ingredients::Ingredient::{self, *};
 use ingredients::{composed, ingredients, objects, packed};
+
+/// Whether an ingredient is a procedural surface whose shader, or one that it calls, names `helper`.
+fn asks(ingredient: Ingredient, helper: &str) -> bool {
+    match ingredient {
+        Pplane(shader) => procedural::asks(Family::Pplane, shader, helper),
+        SmallPsphere(shader) | WidePsphere(shader) => {
+            procedural::asks(Family::Psphere, shader, helper)
+        }
+        _ => false,
+    }
+}
 
 fn validate(wgsl: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.emit_to_string(wgsl))?;
@@ -209,16 +221,12 @@ fn what_is_not_used_is_not_there() {
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
         ("Pplane", &|i| matches!(i, Pplane(_))),
         ("Texplane", &|i| matches!(i, Texplane(_))),
-        ("pplane_0_tiles", &|i| i == Pplane(0)),
-        ("pplane_1_angle", &|i| matches!(i, Pplane(1 | 2))),
-        ("psphere_0_angle", &|i| {
-            matches!(i, SmallPsphere(0) | WidePsphere(0))
-        }),
-        ("color_wheel", &|i| {
-            matches!(i, Pplane(1 | 2) | SmallPsphere(_) | WidePsphere(_))
-        }),
+        ("pplane_0_tiles", &|i| asks(i, "pplane_0_tiles(")),
+        ("pplane_1_angle", &|i| asks(i, "pplane_1_angle(")),
+        ("psphere_0_angle", &|i| asks(i, "psphere_0_angle(")),
+        ("color_wheel", &|i| asks(i, "color_wheel(")),
         ("fn index_table(", &|i| {
-            matches!(i, Tiled | Pplane(0 | 2) | Texplane(_))
+            matches!(i, Tiled | Texplane(_)) || asks(i, "pplane_odd(")
         }),
         ("vec4u(bitcast", &|i| i == Values),
         ("fn make_pixel", &|i| {

@@ -3,12 +3,13 @@
 use glam::{DVec2, DVec3};
 use plumb::gpu::device::Gpu;
 use plumb::render::Settings;
-use plumb::scene::{Camera, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Material, Object, Rectangle, Scene, Shape, Surface};
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
 
 use super::support::{BoundStatistics, Rng, TrueRay, run};
+use crate::common::light;
 
 pub(crate) const VIEWPOINT: DVec3 = DVec3::new(3.7, 2.9, 6.3);
 /// Lengths on the GPU are in units of the power of two next below the viewpoint's z.
@@ -106,17 +107,11 @@ pub(crate) fn scene(rng: &mut Rng, planes: usize, spheres: usize) -> Scene {
         };
         objects.push(object(Shape::Sphere { center, radius }, surface, i % 4));
     }
-    let light = Light {
-        name: "l".into(),
-        location: DVec3::new(4.1, 6.3, 2.2),
-        emissivity: DVec3::ONE,
-        cone: None,
-    };
     Scene {
         camera: camera([64, 48]),
         materials: materials(),
         objects,
-        lights: vec![light],
+        lights: vec![light(DVec3::new(4.1, 6.3, 2.2))],
         textures: vec![],
     }
 }

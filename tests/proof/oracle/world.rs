@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use dashu_ratio::RBig;
 use glam::{DVec2, DVec3};
-use plumb::scene::{Extent, Material, Object, Scene, Shape, Surface};
+use plumb::scene::{self, Extent, Light, Material, Object, Scene, Shape, Surface};
 
 use super::Rules;
 use super::angle::cosine_of;
@@ -119,25 +119,7 @@ impl<'s> World<'s> {
                 .collect(),
             carriers: carriers.len(),
             materials: scene.materials.iter().map(stuff).collect(),
-            lamps: scene
-                .lights
-                .iter()
-                .map(|light| {
-                    let location = Vector::from_f64(light.location);
-                    Lamp {
-                        emissivity: Vector::from_f64(light.emissivity),
-                        cone: light.cone.map(|cone| {
-                            let axis = (&Vector::from_f64(cone.point) - &location).settled();
-                            Cone {
-                                square: axis.dot(&axis).settled(),
-                                axis,
-                                cosine: cosine_of(cone.theta),
-                            }
-                        }),
-                        location,
-                    }
-                })
-                .collect(),
+            lamps: scene.lights.iter().map(lamp).collect(),
         }
     }
 }
@@ -223,13 +205,44 @@ fn sides(normal: &Vector, xdir: DVec3, dimensions: DVec2) -> Sides {
     }
 }
 
+fn lamp(light: &Light) -> Lamp {
+    let Light {
+        name: _,
+        location,
+        emissivity,
+        cone,
+    } = *light;
+    let location = Vector::from_f64(location);
+    Lamp {
+        emissivity: Vector::from_f64(emissivity),
+        cone: cone.map(|scene::Cone { point, theta }| {
+            let axis = (&Vector::from_f64(point) - &location).settled();
+            Cone {
+                square: axis.dot(&axis).settled(),
+                axis,
+                cosine: cosine_of(theta),
+            }
+        }),
+        location,
+    }
+}
+
 fn stuff(material: &Material) -> Stuff {
-    let transparency = Real::from_f64(material.transparency);
-    let most = material.diffuse.max_element();
+    // The glint's exponent is asked of the scene.
+    let Material {
+        name: _,
+        ambient,
+        diffuse,
+        specular,
+        shininess: _,
+        transparency,
+    } = *material;
+    let transparency = Real::from_f64(transparency);
+    let most = diffuse.max_element();
     Stuff {
-        ambient: Vector::from_f64(material.ambient),
-        diffuse: Vector::from_f64(material.diffuse),
-        specular: Vector::from_f64(material.specular),
+        ambient: Vector::from_f64(ambient),
+        diffuse: Vector::from_f64(diffuse),
+        specular: Vector::from_f64(specular),
         opacity: (&Real::integer(1) - &transparency).settled(),
         transparency,
         tint: if most == 0.0 {
@@ -237,8 +250,7 @@ fn stuff(material: &Material) -> Stuff {
         } else {
             let most = Real::from_f64(most);
             Vector(
-                material
-                    .diffuse
+                diffuse
                     .to_array()
                     .map(|k| (&Real::from_f64(k) / &most).settled()),
             )
