@@ -6,17 +6,22 @@ use crate::real::Bounded;
 use crate::real::rational::ratio;
 
 macro_rules! named {
-    ($($(#[doc = $doc:literal])+ $name:ident = $value:expr;)+) => {
+    ($(#[doc = $about:literal])+ $list:ident: $($(#[doc = $doc:literal])+ $name:ident = $value:expr;)+) => {
         $($(#[doc = $doc])+ pub const $name: f64 = $value;)+
 
-        /// The constants that the shader's text refers to by name.
-        pub const NAMED: &[(&str, f64)] = &[$((stringify!($name), $name)),+];
+        $(#[doc = $about])+
+        pub const $list: &[(&str, f64)] = &[$((stringify!($name), $name)),+];
     };
 }
 
 named! {
-    /// What + − × may be off by, relatively: the results are faithfully rounded.
-    U = 1.0 / 8_388_608.0;
+    /// The constants that the shader's text refers to by name.
+    NAMED:
+    /// What a bound is larger by, for the roundings of itself and of the bounds and tests that it goes into: fewer than
+    /// 800, of 838.
+    GROWTH = 1.0001;
+    /// What + − × may be off by, relatively (`ROUNDING`), and what bounds' own roundings may take.
+    U = ROUNDING * GROWTH;
     /// What a square root is taken of is at least this.
     TINY_SQUARE = 1.0 / (1_u128 << 110) as f64;
     /// Secondary hits farther than this are left to the CPU.
@@ -25,8 +30,8 @@ named! {
     LEAST_INVERSE = 1.0 / (1_u64 << 40) as f64;
     /// Directions that are known less well than this are not followed: the bounds are first order there.
     DIR_LIMIT = 1.0 / 128.0;
-    /// Hits whose 1/s is less than this many times its bound are left to the CPU where their error goes on: the bounds
-    /// that follow are first order.
+    /// What is less than this many times its bound is left to the CPU where its error goes on: the bounds that follow
+    /// are first order.
     FIRST_ORDER = 128.0;
     /// What a bound of the first order is multiplied by: products of two errors are below a hundredth of it.
     SECOND_ORDER = 1.01;
@@ -40,10 +45,28 @@ named! {
     HIT_ROUNDINGS = 5.0;
     /// Roundings of a dot product with a plane, of its sum with an offset.
     PLANE_ROUNDINGS = 6.0;
+    /// A plane is not seen edge-on where the cosine is more than this many times its bound.
+    STEEP = 2.0;
+    /// 1/(1 − x) is at most 1 + this times x, for x up to 1/`STEEP`.
+    STEEP_SLOPE = 2.0;
+    /// Roundings of the distance of a plane.
+    DISTANCE_ROUNDINGS = 8.0;
+    /// What a bound from below is multiplied by, for the roundings of a sum, a quotient and the tests it goes into.
+    LOWERED = 0.999999;
+    /// Roundings of the distances that are compared with that of the closest hit.
+    RIVAL_ROUNDINGS = 4.0;
     /// Roundings of base + t·dir.
     POSITION_ROUNDINGS = 5.0;
+    /// Roundings of the normal of a plane.
+    PLANE_NORMAL_ROUNDINGS = 2.0;
+    /// How far the perpendicular from a ray to a center turns with the direction, to the first order.
+    TURN = 2.05;
+    /// The same, to the second order.
+    TURN_MORE = 2.0;
     /// Roundings of the perpendicular from a ray to a center.
     PERPENDICULAR_ROUNDINGS = 12.0;
+    /// x² − y² is at most |x − y|·(this·x + |x − y|).
+    SQUARE_SLOPE = 2.01;
     /// Roundings of r² − |perpendicular|².
     DISC_ROUNDINGS = 12.0;
     /// Roundings of a root by `inverseSqrt`, and what is added to it.
@@ -58,29 +81,75 @@ named! {
     MIRROR_ROUNDINGS = 18.0;
     /// Roundings of an index of tiles, blocks or texels.
     INDEX_ROUNDINGS = 5.0;
+    /// Indices of texels are certain up to this: there their remainder is.
+    MOST_INDEX = (1_u64 << 20) as f64;
+    /// The colour wheel's place is to be farther from its middle than the root of this many times its bound.
+    WHEEL_FAR = 1024.0;
+    /// How much the colours of `color_wheel` change with the place, in units of its distance.
+    WHEEL_SLOPE = 3.0;
     /// Roundings of the colours of `color_wheel`.
     WHEEL_ROUNDINGS = 20.0;
+    /// Roundings that widen the tree's boxes.
+    BOX_ROUNDINGS = 4.0;
+    /// What a sample's error is multiplied by: the roundings of up to 2¹⁶ samples' bounds.
+    SAMPLE_GROWTH = 1.01;
+    /// Roundings of a sum of samples.
+    SAMPLE_ROUNDINGS = 3.0;
 }
 
-/// Added to every literal bound: what flushed subnormals may amount to.
-const FLOOR: f64 = 1.0 / (1_u128 << 100) as f64;
+/// The results of + − × are faithfully rounded: off by less than this, relatively.
+pub const ROUNDING: f64 = 1.0 / 8_388_608.0;
 
-/// No number that goes to the GPU may be larger: then no product of those that meet there overflows.
-pub const LARGEST: f64 = (1_u64 << 40) as f64;
-
-/// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
-const LINEAR_ROUNDINGS: [f64; 2] = [6.0, 8.0];
-/// The same for a quadratic form with six coefficients.
-const QUADRATIC_ROUNDINGS: [f64; 2] = [9.0, 18.0];
-/// What an offset that was rounded to f32 may be off by, in pixels.
-const OFFSET_ERROR: f64 = 1.0 / 33_554_432.0;
-
-/// Roundings of |W|, of W/|W| and of an ambient value, for a unit of κ.
-pub const LENGTH_ROUNDINGS: f64 = 20.0;
-/// See [`LENGTH_ROUNDINGS`].
-pub const DIR_ROUNDINGS: f64 = 12.0;
-/// See [`LENGTH_ROUNDINGS`].
-pub const VALUE_ROUNDINGS: f64 = 13.0;
+named! {
+    /// The constants of the bounds that the host computes.
+    LITERAL:
+    /// Added to every literal bound: what flushed subnormals may amount to.
+    FLOOR = 1.0 / (1_u128 << 100) as f64;
+    /// What a result that is flushed to 0, or a coefficient that f32 cannot hold, is off by at most.
+    LEAST_NORMAL = 1.0 / (1_u128 << 126) as f64;
+    /// No number that goes to the GPU may be larger: then no product of those that meet there overflows.
+    LARGEST = (1_u64 << 40) as f64;
+    /// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
+    LINEAR_ROUNDINGS = 6.0;
+    /// The same with several samples a pixel.
+    SAMPLED_LINEAR_ROUNDINGS = 8.0;
+    /// The same for a quadratic form with six coefficients.
+    QUADRATIC_ROUNDINGS = 9.0;
+    /// The same with several samples a pixel.
+    SAMPLED_QUADRATIC_ROUNDINGS = 18.0;
+    /// What an offset that was rounded to f32 may be off by, in pixels.
+    OFFSET_ERROR = 1.0 / 33_554_432.0;
+    /// Roundings of W.
+    W_ROUNDINGS = 5.0;
+    /// Roundings of |W| and of a primary hit's distance, for a unit of κ.
+    LENGTH_ROUNDINGS = 20.0;
+    /// The same with several samples a pixel.
+    SAMPLED_LENGTH_ROUNDINGS = 23.0;
+    /// Roundings of W/|W|, likewise.
+    DIR_ROUNDINGS = 12.0;
+    /// The same with several samples a pixel.
+    SAMPLED_DIR_ROUNDINGS = 13.0;
+    /// Roundings of an ambient value, likewise.
+    VALUE_ROUNDINGS = 13.0;
+    /// κ may be no larger.
+    MOST_CONDITION = 64.0;
+    /// Roundings of the fraction that is added to an index.
+    FRACTION_ROUNDINGS = 6.0;
+    /// Roundings of what is subtracted from a position for H − point.
+    FROM_POINT_ROUNDINGS = 4.0;
+    /// Beyond a sphere's box the discriminant is below minus this share of what it would be for a circle.
+    OUTLINE_SHARE = 0.1;
+    /// So many roundings of all its terms lie between it and 0 there.
+    OUTLINE_ROUNDINGS = 64.0;
+    /// The bound of a form whose border runs midway between rays, in steps of their lattice.
+    STEP_ERROR = 1.0 / 8.0;
+    /// So many steps such a form may have.
+    MOST_STEPS = (1_u64 << 22) as f64;
+    /// 255 times the value below which a byte is 0 whatever was rounded.
+    DARKNESS = 0.9;
+    /// What the brightest value that a ray may bring is multiplied by, for the roundings of its own.
+    BRIGHT_GROWTH = 1.001;
+}
 
 /// The pixels of the picture, and how rays pass through them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,8 +172,9 @@ impl Screen {
         })
     }
 
-    fn sampled(&self) -> usize {
-        usize::from(self.margin > 0.0)
+    /// What holds with a ray a pixel, or with several.
+    fn either(&self, one: f64, several: f64) -> f64 {
+        if self.margin > 0.0 { several } else { one }
     }
 
     /// What a coordinate's own rounding adds to the error of a form, for a unit of its coefficient.
@@ -134,12 +204,11 @@ pub type Form<const N: usize> = ([f32; N], f32);
 pub fn linear(form: [Bounded; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
     let most = [reach[0], reach[1], 1.0];
     let moved = [screen.offset_error(), screen.offset_error(), 0.0];
-    let mut error = FLOOR;
-    for i in 0..3 {
-        error += bound(form[i], most[i], LINEAR_ROUNDINGS[screen.sampled()])
-            + form[i].value.abs() * moved[i];
-    }
-    (form.map(|c| c.value as f32), round_up(error))
+    let roundings = screen.either(LINEAR_ROUNDINGS, SAMPLED_LINEAR_ROUNDINGS);
+    (
+        form.map(|c| c.value as f32),
+        bound(&form, &most, &moved, roundings),
+    )
 }
 
 /// A quadratic form over (X², XY, Y², X, Y, 1).
@@ -148,17 +217,22 @@ pub fn quadratic(form: [Bounded; 6], reach: [f64; 2], screen: &Screen) -> Form<6
     let most = [x * x, x * y, y * y, x, y, 1.0];
     let slope = screen.offset_error();
     let moved = [2.0 * x, x + y, 2.0 * y, 1.0, 1.0, 0.0].map(|m| m * slope);
-    let mut error = FLOOR;
-    for i in 0..6 {
-        error += bound(form[i], most[i], QUADRATIC_ROUNDINGS[screen.sampled()])
-            + form[i].value.abs() * moved[i];
-    }
-    (form.map(|c| c.value as f32), round_up(error))
+    let roundings = screen.either(QUADRATIC_ROUNDINGS, SAMPLED_QUADRATIC_ROUNDINGS);
+    (
+        form.map(|c| c.value as f32),
+        bound(&form, &most, &moved, roundings),
+    )
 }
 
-/// What one term adds to a form's error.
-fn bound(coefficient: Bounded, most: f64, roundings: f64) -> f64 {
-    most * (roundings * U * coefficient.value.abs() + coefficient.error) * (1.0 + 1e-6)
+/// The bound of a form whose terms are at most `most` for a unit of their coefficients, and `moved` more where the
+/// pixel is off. A rounding takes a share of the term, or all of what is flushed.
+fn bound(form: &[Bounded], most: &[f64], moved: &[f64], roundings: f64) -> f32 {
+    let terms = form.iter().zip(most).zip(moved);
+    let errors = terms.map(|((c, most), moved)| {
+        let size = c.value.abs();
+        most * (roundings * (ROUNDING * size + LEAST_NORMAL) + c.error) + size * moved
+    });
+    round_up((FLOOR + errors.sum::<f64>()) * GROWTH)
 }
 
 /// An upper bound of |value|, as an f64.
@@ -182,7 +256,7 @@ pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     } * screen.lattice;
     let reach = screen.reach(anchor);
     // The half step must have a bit in every sum.
-    let room = screen.lattice * 4_194_304.0;
+    let room = screen.lattice * MOST_STEPS;
     // A border outside the picture is as good anywhere outside.
     let border = border.clamp(-reach[axis] - 1.0, reach[axis] + 1.0);
     if reach[axis] + 2.0 > room {
@@ -192,10 +266,63 @@ pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     let mut form = [0.0; 3];
     form[axis] = sign as f32;
     form[2] = (-sign * border) as f32;
-    Some((form, (screen.lattice / 8.0) as f32))
+    Some((form, (screen.lattice * STEP_ERROR) as f32))
 }
 
 /// Whether f32 can hold the number with room to spare; 0 is as good as any small number.
 pub fn fits(value: f32) -> bool {
     f64::from(value.abs()) <= LARGEST
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::Real as _;
+
+    const SCREEN: Screen = Screen {
+        pixels: [1 << 20, 1],
+        margin: 0.0,
+        lattice: 1.0,
+    };
+
+    /// Forms whose coefficients f32 cannot hold, or a device may take for 0, over pictures so wide that it matters.
+    #[test]
+    fn coefficients_that_are_flushed_are_within_the_bound() {
+        let x = f64::from(1 << 20);
+        for exponent in [-127.0_f64, -140.0, -300.0] {
+            let tiny = Bounded::exact(exponent.exp2());
+            let zero = Bounded::zero();
+            let all_of_it = tiny.value * x * x;
+            let (_, error) = quadratic([tiny, zero, zero, zero, zero, zero], [x, 0.0], &SCREEN);
+            assert!(f64::from(error) > all_of_it, "{error:e} {all_of_it:e}");
+            let (_, error) = linear([tiny, zero, zero], [x, 0.0], &SCREEN);
+            assert!(f64::from(error) > tiny.value * x);
+        }
+    }
+
+    /// k roundings of a term make a little more than k·ROUNDING of it, and the bound itself is rounded k times more in
+    /// the comparison.
+    #[test]
+    fn what_follows_the_first_order_is_within_the_bound() {
+        let one = Bounded::exact(1.0);
+        let sampled = Screen {
+            margin: 0.5,
+            ..SCREEN
+        };
+        let bounds = [
+            (LINEAR_ROUNDINGS, linear([one; 3], [1.0; 2], &SCREEN).1, 3.0),
+            (
+                SAMPLED_QUADRATIC_ROUNDINGS,
+                quadratic([one; 6], [1.0; 2], &sampled).1,
+                6.0,
+            ),
+        ];
+        for (roundings, bound, terms) in bounds {
+            // A faithful result r of a exact one is off by ROUNDING·|r|: by a factor of 1/(1 − ROUNDING) at most.
+            let off = (1.0 - ROUNDING).powf(-roundings) - 1.0;
+            let left = f64::from(bound) * (1.0 - ROUNDING).powf(roundings);
+            assert!(terms * off < left, "{roundings}");
+            assert!(left < 1.001 * terms * off);
+        }
+    }
 }

@@ -3,14 +3,14 @@
 
 use super::Packed;
 use crate::shader::binding::BINDINGS;
-use crate::shader::bounds::LARGEST;
+use crate::shader::bounds::{LARGEST, MOST_CONDITION};
 use crate::shader::record::Record as _;
 
 impl Packed {
     /// Why no bound is to be relied on: a number so large that products of such numbers might overflow.
     pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
         let camera = &self.camera.numbers;
-        let far = f64::from(self.camera.condition) <= 64.0
+        let far = f64::from(self.camera.condition) <= MOST_CONDITION
             && camera.fits()
             && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
             && f64::from(camera.gain) >= 1.0 / LARGEST
