@@ -5,13 +5,34 @@ use crate::prepare::plane::Step;
 use crate::real::Bounded;
 use crate::real::rational::ratio;
 
+/// A constant of an error bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constant {
+    /// Its name here, in the shader's text and in docs/NUMERICS.md.
+    pub name: &'static str,
+    /// What it is.
+    pub value: f64,
+    /// What it has to be at least, by its derivation; of limits that are chosen, and of what is a fact, the same.
+    pub least: f64,
+}
+
 macro_rules! named {
-    ($(#[doc = $about:literal])+ $list:ident: $($(#[doc = $doc:literal])+ $name:ident = $value:expr;)+) => {
+    (
+        $(#[doc = $about:literal])+
+        $list:ident:
+        $($(#[doc = $doc:literal])+ $name:ident = $value:expr $(, at least $least:expr)?;)+
+    ) => {
         $($(#[doc = $doc])+ pub const $name: f64 = $value;)+
 
         $(#[doc = $about])+
-        pub const $list: &[(&str, f64)] = &[$((stringify!($name), $name)),+];
+        pub const $list: &[Constant] = &[$(Constant {
+            name: stringify!($name),
+            value: $name,
+            least: named!(@least $name $($least)?),
+        }),+];
     };
+    (@least $name:ident) => { $name };
+    (@least $name:ident $least:expr) => { $least };
 }
 
 named! {
@@ -19,9 +40,9 @@ named! {
     NAMED:
     /// What a bound is larger by, for the roundings of itself and of the bounds and tests that it goes into: fewer than
     /// 800, of 838.
-    GROWTH = 1.0001;
+    GROWTH = 1.0001, at least 1.0;
     /// What + − × may be off by, relatively (`ROUNDING`), and what bounds' own roundings may take.
-    U = ROUNDING * GROWTH;
+    U = ROUNDING * GROWTH, at least ROUNDING;
     /// What a square root is taken of is at least this.
     TINY_SQUARE = 1.0 / (1_u128 << 110) as f64;
     /// Secondary hits farther than this are left to the CPU.
@@ -34,67 +55,67 @@ named! {
     /// are first order.
     FIRST_ORDER = 128.0;
     /// What a bound of the first order is multiplied by: products of two errors are below a hundredth of it.
-    SECOND_ORDER = 1.01;
+    SECOND_ORDER = 1.01, at least 128.0 / 127.0;
     /// The error of a root is at most this times the square's over the root.
-    ROOT_NEAR = 1.01;
+    ROOT_NEAR = 1.01, at least 1.0;
     /// The same where the square is above `ROOT_FAR_FROM` times its error.
-    ROOT_FAR = 0.54;
+    ROOT_FAR = 0.54, at least 0.5359;
     /// See `ROOT_FAR`.
     ROOT_FAR_FROM = 4.0;
     /// Roundings of the position of a primary hit, for a unit of its distance.
-    HIT_ROUNDINGS = 5.0;
+    HIT_ROUNDINGS = 5.0, at least 4.5;
     /// Roundings of a dot product with a plane, of its sum with an offset.
-    PLANE_ROUNDINGS = 6.0;
+    PLANE_ROUNDINGS = 6.0, at least 5.5;
     /// A plane is not seen edge-on where the cosine is more than this many times its bound.
     STEEP = 2.0;
     /// 1/(1 − x) is at most 1 + this times x, for x up to 1/`STEEP`.
-    STEEP_SLOPE = 2.0;
+    STEEP_SLOPE = 2.0, at least 2.0;
     /// Roundings of the distance of a plane.
-    DISTANCE_ROUNDINGS = 8.0;
+    DISTANCE_ROUNDINGS = 8.0, at least 5.5;
     /// What a bound from below is multiplied by, for the roundings of a sum, a quotient and the tests it goes into.
-    LOWERED = 0.999999;
+    LOWERED = 0.999999, at least 1.0 - 7.5 * ROUNDING;
     /// Roundings of the distances that are compared with that of the closest hit.
-    RIVAL_ROUNDINGS = 4.0;
+    RIVAL_ROUNDINGS = 4.0, at least 3.0;
     /// Roundings of base + t·dir.
-    POSITION_ROUNDINGS = 5.0;
+    POSITION_ROUNDINGS = 5.0, at least 4.5;
     /// Roundings of the normal of a plane.
-    PLANE_NORMAL_ROUNDINGS = 2.0;
+    PLANE_NORMAL_ROUNDINGS = 2.0, at least 0.5;
     /// How far the perpendicular from a ray to a center turns with the direction, to the first order.
-    TURN = 2.05;
+    TURN = 2.05, at least 2.0;
     /// The same, to the second order.
     TURN_MORE = 2.0;
     /// Roundings of the perpendicular from a ray to a center.
-    PERPENDICULAR_ROUNDINGS = 12.0;
+    PERPENDICULAR_ROUNDINGS = 12.0, at least 11.0;
     /// x² − y² is at most |x − y|·(this·x + |x − y|).
-    SQUARE_SLOPE = 2.01;
+    SQUARE_SLOPE = 2.01, at least 2.0;
     /// Roundings of r² − |perpendicular|².
-    DISC_ROUNDINGS = 12.0;
+    DISC_ROUNDINGS = 12.0, at least 9.0;
     /// Roundings of a root by `inverseSqrt`, and what is added to it.
-    ROOT_ROUNDINGS = 10.0;
+    ROOT_ROUNDINGS = 10.0, at least 7.5;
     /// Roundings of a unit normal.
-    NORMAL_ROUNDINGS = 5.0;
+    NORMAL_ROUNDINGS = 5.0, at least 4.5;
     /// Roundings of a vector divided by its length.
-    DIRECTION_ROUNDINGS = 8.0;
+    DIRECTION_ROUNDINGS = 8.0, at least 7.5;
     /// Roundings of a dot product of unit vectors.
-    DOT_ROUNDINGS = 5.0;
+    DOT_ROUNDINGS = 5.0, at least 4.0;
     /// Roundings of a mirrored direction.
-    MIRROR_ROUNDINGS = 18.0;
+    MIRROR_ROUNDINGS = 18.0, at least 11.0;
     /// Roundings of an index of tiles, blocks or texels.
-    INDEX_ROUNDINGS = 5.0;
+    INDEX_ROUNDINGS = 5.0, at least 4.5;
     /// Indices of texels are certain up to this: there their remainder is.
     MOST_INDEX = (1_u64 << 20) as f64;
     /// The colour wheel's place is to be farther from its middle than the root of this many times its bound.
     WHEEL_FAR = 1024.0;
     /// How much the colours of `color_wheel` change with the place, in units of its distance.
-    WHEEL_SLOPE = 3.0;
+    WHEEL_SLOPE = 3.0, at least 2.96;
     /// Roundings of the colours of `color_wheel`.
-    WHEEL_ROUNDINGS = 20.0;
+    WHEEL_ROUNDINGS = 20.0, at least 18.5;
     /// Roundings that widen the tree's boxes.
-    BOX_ROUNDINGS = 4.0;
+    BOX_ROUNDINGS = 4.0, at least 1.0;
     /// What a sample's error is multiplied by: the roundings of up to 2¹⁶ samples' bounds.
-    SAMPLE_GROWTH = 1.01;
+    SAMPLE_GROWTH = 1.01, at least 1.008;
     /// Roundings of a sum of samples.
-    SAMPLE_ROUNDINGS = 3.0;
+    SAMPLE_ROUNDINGS = 3.0, at least 2.5;
 }
 
 /// The results of + − × are faithfully rounded: off by less than this, relatively.
@@ -104,51 +125,51 @@ named! {
     /// The constants of the bounds that the host computes.
     LITERAL:
     /// Added to every literal bound: what flushed subnormals may amount to.
-    FLOOR = 1.0 / (1_u128 << 100) as f64;
+    FLOOR = 1.0 / (1_u128 << 100) as f64, at least 1.0 / (1_u128 << 104) as f64;
     /// What a result that is flushed to 0, or a coefficient that f32 cannot hold, is off by at most.
     LEAST_NORMAL = 1.0 / (1_u128 << 126) as f64;
     /// No number that goes to the GPU may be larger: then no product of those that meet there overflows.
     LARGEST = (1_u64 << 40) as f64;
     /// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
-    LINEAR_ROUNDINGS = 6.0;
+    LINEAR_ROUNDINGS = 6.0, at least 5.5;
     /// The same with several samples a pixel.
-    SAMPLED_LINEAR_ROUNDINGS = 8.0;
+    SAMPLED_LINEAR_ROUNDINGS = 8.0, at least 7.5;
     /// The same for a quadratic form with six coefficients.
-    QUADRATIC_ROUNDINGS = 9.0;
+    QUADRATIC_ROUNDINGS = 9.0, at least 8.5;
     /// The same with several samples a pixel.
-    SAMPLED_QUADRATIC_ROUNDINGS = 18.0;
+    SAMPLED_QUADRATIC_ROUNDINGS = 18.0, at least 16.5;
     /// What an offset that was rounded to f32 may be off by, in pixels.
     OFFSET_ERROR = 1.0 / 33_554_432.0;
     /// Roundings of W.
-    W_ROUNDINGS = 5.0;
+    W_ROUNDINGS = 5.0, at least 3.75;
     /// Roundings of |W| and of a primary hit's distance, for a unit of κ.
-    LENGTH_ROUNDINGS = 20.0;
+    LENGTH_ROUNDINGS = 20.0, at least 17.5;
     /// The same with several samples a pixel.
-    SAMPLED_LENGTH_ROUNDINGS = 23.0;
+    SAMPLED_LENGTH_ROUNDINGS = 23.0, at least 21.25;
     /// Roundings of W/|W|, likewise.
-    DIR_ROUNDINGS = 12.0;
+    DIR_ROUNDINGS = 12.0, at least 9.5;
     /// The same with several samples a pixel.
-    SAMPLED_DIR_ROUNDINGS = 13.0;
+    SAMPLED_DIR_ROUNDINGS = 13.0, at least 12.0;
     /// Roundings of an ambient value, likewise.
-    VALUE_ROUNDINGS = 13.0;
+    VALUE_ROUNDINGS = 13.0, at least 11.25;
     /// κ may be no larger.
     MOST_CONDITION = 64.0;
     /// Roundings of the fraction that is added to an index.
-    FRACTION_ROUNDINGS = 6.0;
+    FRACTION_ROUNDINGS = 6.0, at least 4.5;
     /// Roundings of what is subtracted from a position for H − point.
-    FROM_POINT_ROUNDINGS = 4.0;
+    FROM_POINT_ROUNDINGS = 4.0, at least 1.5;
     /// Beyond a sphere's box the discriminant is below minus this share of what it would be for a circle.
     OUTLINE_SHARE = 0.1;
     /// So many roundings of all its terms lie between it and 0 there.
-    OUTLINE_ROUNDINGS = 64.0;
+    OUTLINE_ROUNDINGS = 64.0, at least 45.0;
     /// The bound of a form whose border runs midway between rays, in steps of their lattice.
-    STEP_ERROR = 1.0 / 8.0;
+    STEP_ERROR = 1.0 / 8.0, at least 0.0;
     /// So many steps such a form may have.
     MOST_STEPS = (1_u64 << 22) as f64;
     /// 255 times the value below which a byte is 0 whatever was rounded.
     DARKNESS = 0.9;
     /// What the brightest value that a ray may bring is multiplied by, for the roundings of its own.
-    BRIGHT_GROWTH = 1.001;
+    BRIGHT_GROWTH = 1.001, at least 1.0001;
 }
 
 /// The pixels of the picture, and how rays pass through them.

@@ -154,7 +154,8 @@ fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
         (bounds::LENGTH_ROUNDINGS, bounds::DIR_ROUNDINGS)
     };
     let brightest = (bounds::DARKNESS / f64::from(packed.dark)).min(f64::from(f32::MAX));
-    let named = bounds::NAMED.iter().map(|(name, value)| line(name, *value));
+    let named = bounds::NAMED.iter();
+    let named = named.map(|constant| line(constant.name, constant.value));
     let mut lines: Vec<String> = named.collect();
     lines.extend([
         line("W_ERROR", f64::from(camera.w_error)),

@@ -124,8 +124,19 @@ fn at_a_hit_point() {
     }
 }
 
-/// What need not be noticed: without it the other terms of its sum still cover the roundings of drivers that round to
-/// nearest, half as much as the model allows.
+/// Constants are no smaller than they have to be: at what they have to be at least, by their derivation, nothing is
+/// outside its bound.
+#[test]
+fn every_constant_by_itself() {
+    let gpu = support::open();
+    for (name, violations) in faults::of_the_least(&gpu) {
+        println!("{name:<34} {violations:>8}");
+        assert_eq!(violations, 0, "{name}: the derivation is wrong");
+    }
+}
+
+/// What need not be noticed: without it the other terms of its sum, each at what it has to be at least, still cover the
+/// roundings that random operands make: several of the worst of them would have to come together.
 const COVERED: &[&str] = &[
     "POSITION_ROUNDINGS",
     "DISC_ROUNDINGS",
