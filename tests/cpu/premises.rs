@@ -172,9 +172,8 @@ fn faults(document: &str, code: &[Stands]) -> Vec<String> {
             continue;
         };
         let (name, files) = (name.trim_matches('`'), quoted(files));
-        let found = code.iter().find(|stands| {
-            stands.name == name && (stands.file.is_empty() || files.contains(&stands.file.as_str()))
-        });
+        let of = |file: &str| code.iter().find(|s| s.name == name && s.file == file);
+        let found = files.iter().find_map(|file| of(file)).or_else(|| of(""));
         let Some(stands) = found else {
             faults.push(format!("{name}: the code has no such constant"));
             continue;
