@@ -34,9 +34,9 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
     (*traced).color += share * lit.color;
 //#if certified
     (*traced).error += share
-        * (lit.error * (1.0 + ended.weight_error)
-        + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + 12.0 * U))
-        + 2.0 * U * (*traced).color;
+        * (lit.error * (SECOND_ORDER + ended.weight_error)
+        + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + SHARE_ROUNDINGS * U))
+        + SUM_ROUNDINGS * U * (*traced).color;
 //#end
 }
 //#if mirror
@@ -51,11 +51,11 @@ fn mirror_branch(ended: Branch, point: Point, specular: vec3f) -> Branch {
     mirror.weight = ended.weight * specular;
 //#if certified
     mirror.ray.dir = barrier(2.0 * along * point.normal + ended.ray.dir);
-    mirror.ray.dir_error = SECOND_ORDER * ended.ray.dir_error + 4.04 * point.normal_error + MIRROR_ROUNDINGS * U;
+    mirror.ray.dir_error = SECOND_ORDER * ended.ray.dir_error + MIRROR_TURN * point.normal_error + MIRROR_ROUNDINGS * U;
     mirror.ray.base_error = point.error;
     mirror.ray.size = point.size;
     mirror.total_error = ended.total_error;
-    mirror.weight_error = ended.weight_error + 2.0 * U;
+    mirror.weight_error = ended.weight_error + WEIGHT_ROUNDINGS * U;
 //#else
     mirror.ray.dir = 2.0 * along * point.normal + ended.ray.dir;
 //#end
@@ -72,7 +72,7 @@ fn through_branch(ended: Branch, point: Point, transparency: f32) -> Branch {
 //#if certified
     through.ray.base_error = point.error;
     through.ray.size = point.size;
-    through.weight_error = ended.weight_error + 5.0 * U;
+    through.weight_error = ended.weight_error + PANE_WEIGHT_ROUNDINGS * U;
 //#end
     if transparency > 0.0 {
         through.weight *= materials[tile_material(point)].tint * transparency;
@@ -106,13 +106,13 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
         branch.total_error += at.t_error + U * branch.total; //~
         add_shade(traced, branch, material.kept, lit);
 //#if certified
-        if doubt | (branch.total_error > 0.01 * branch.total) {
+        if doubt | (FIRST_ORDER * branch.total_error > branch.total) {
             (*traced).verdict = UNDECIDED;
             break;
         }
         let short = MAX_PATH - branch.total;
         let goes_on = any(branch.weight * material.specular > vec3f(0.0)) | (material.transparency > 0.0);
-        if goes_on & !(abs(short) > branch.total_error + 2.0 * U * MAX_PATH) {
+        if goes_on & !(abs(short) > branch.total_error + PATH_ROUNDINGS * U * MAX_PATH) {
             // Whether the path ends here is not certain.
             (*traced).verdict = UNDECIDED;
             break;

@@ -49,7 +49,7 @@ fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
         // The product is kept above 0, so that it is never flushed: the glint shines through however little else does.
         transmittance = max(transmittance * (materials[tile_material(blocker)].tint * material.transparency),
             vec3f(0x1p-120f));
-        roundings += 4.0; //~
+        roundings += PANE_ROUNDINGS; //~
         range.skip = blocker.group;
         range.beyond = hit.t;
         range.beyond_error = hit.error; //~
@@ -111,13 +111,13 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let d = toward * inverse;
     let c = dot(d, point.normal);
 //#if certified
-    let toward_error = point.error + U * (light.size + 2.0 * distance);
-    if !(distance > 4.0 * toward_error) {
+    let toward_error = point.error + U * (light.size + TOWARD_ROUNDINGS * distance);
+    if !(distance > CLOSE_FROM * toward_error) {
         doubt = true;
         return shade;
     }
-    let d_error = 1.4 * toward_error * inverse + DIRECTION_ROUNDINGS * U;
-    let distance_error = toward_error + DIRECTION_ROUNDINGS * U * distance;
+    let d_error = CLOSE * toward_error * inverse + DIRECTION_ROUNDINGS * U;
+    let distance_error = toward_error + LIMIT_ROUNDINGS * U * distance;
     let c_error = d_error + point.normal_error + DOT_ROUNDINGS * U;
     if c < -c_error {
         return shade;
@@ -131,7 +131,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#if cone
     let inside = -dot(d, light.axis) - light.cosine;
 //#if certified
-    let inside_error = d_error + (DOT_ROUNDINGS + 3.0) * U;
+    let inside_error = d_error + CONE_ROUNDINGS * U;
     if light.cosine >= -1.0 {
         if inside < -inside_error {
             return shade;
@@ -157,7 +157,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let full = diffuse * light.emissivity * blocked.transmittance * (inverse * CAMERA_UNIT);
     shade.color = full * max(c, 0.0);
     shade.error = full //~
-        * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
+        * (c_error + max(c, 0.0) * (CLOSE * distance_error * inverse + (LIGHT_ROUNDINGS + blocked.roundings) * U)); //~
 //#if glint
     let material = materials[objects[point.object].material];
     if material.shininess > 0.0 {
@@ -169,11 +169,11 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
         let half_inverse = inverseSqrt(max(half_2, TINY_SQUARE));
         let cosine = dot(half, point.normal) * half_inverse;
 //#if certified
-        let back_error = seen.base_error + point.error + 2.0 * U * back_2 * back_inverse;
-        let half_error = 1.4 * back_error * back_inverse + d_error + (DIRECTION_ROUNDINGS + 4.0) * U;
-        let cosine_error = 1.4 * half_error * half_inverse + point.normal_error
-            + (DIRECTION_ROUNDINGS + DOT_ROUNDINGS) * U;
-        let near = (back_2 * back_inverse > 4.0 * back_error) & (half_2 * half_inverse > 4.0 * half_error);
+        let back_error = seen.base_error + point.error + TOWARD_ROUNDINGS * U * back_2 * back_inverse;
+        let half_error = CLOSE * back_error * back_inverse + d_error + HALF_ROUNDINGS * U;
+        let cosine_error = CLOSE * half_error * half_inverse + point.normal_error + COSINE_ROUNDINGS * U;
+        let near = (back_2 * back_inverse > CLOSE_FROM * back_error)
+            & (half_2 * half_inverse > CLOSE_FROM * half_error);
         doubt |= !near | (material.power == 0u);
         if cosine > -cosine_error {
             // The upper end of what the cosine may be, and all that lies below it as error.
@@ -181,7 +181,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
             let glint = material.specular * light.emissivity * power(upper, material.power);
             shade.color += glint;
             let n = f32(material.power);
-            shade.error += glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
+            shade.error += glint * (min(POWER_SLOPE * n * cosine_error / upper, 1.0) + (n + POWER_ROUNDINGS) * U);
         }
 //#else
         if cosine > 0.0 {

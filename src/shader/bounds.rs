@@ -98,6 +98,42 @@ named! {
     DIRECTION_ROUNDINGS = 8.0, at least 7.5;
     /// Roundings of a dot product of unit vectors.
     DOT_ROUNDINGS = 5.0, at least 4.0;
+    /// Lights, and what else a direction leads to, are farther away than this many times the bound of that.
+    CLOSE_FROM = 4.0;
+    /// 1/(1 − x) for x up to 1/`CLOSE_FROM`.
+    CLOSE = 1.4, at least 4.0 / 3.0;
+    /// Roundings of the difference of two positions.
+    TOWARD_ROUNDINGS = 2.0, at least 1.0;
+    /// Roundings of the distance of a light, which ends a shadow ray, and of what is compared with it.
+    LIMIT_ROUNDINGS = 11.0, at least 10.5;
+    /// Roundings of how far a direction is inside of a cone.
+    CONE_ROUNDINGS = 8.0, at least 6.0;
+    /// Roundings of what a light brings.
+    LIGHT_ROUNDINGS = 24.0, at least 8.5;
+    /// Roundings that a pane adds to the light that it lets through.
+    PANE_ROUNDINGS = 4.0, at least 3.0;
+    /// Roundings of the sum of two directions.
+    HALF_ROUNDINGS = 12.0, at least 9.5;
+    /// Roundings of its cosine.
+    COSINE_ROUNDINGS = 13.0, at least 9.5;
+    /// How much the power of a cosine changes, for a unit of exponent, power and relative error.
+    POWER_SLOPE = 2.04, at least 2.02;
+    /// Roundings of a glint, beside one for each unit of its exponent.
+    POWER_ROUNDINGS = 12.0, at least 3.0;
+    /// Roundings of a sum of colours.
+    SUM_ROUNDINGS = 2.0, at least 2.0;
+    /// Roundings of the share of a colour that a ray brings.
+    SHARE_ROUNDINGS = 12.0, at least 6.5;
+    /// Half of what a ray may bring is within this share of both ends.
+    HALF_OPEN = 0.51, at least 0.5001;
+    /// How much a mirrored direction turns with the normal.
+    MIRROR_TURN = 4.04, at least 4.004;
+    /// Roundings that a mirror adds to a branch's weight.
+    WEIGHT_ROUNDINGS = 2.0, at least 1.5;
+    /// Roundings that a pane adds to it.
+    PANE_WEIGHT_ROUNDINGS = 5.0, at least 3.0;
+    /// Roundings of what is left of the longest path.
+    PATH_ROUNDINGS = 2.0, at least 1.5;
     /// Roundings of a mirrored direction.
     MIRROR_ROUNDINGS = 18.0, at least 11.0;
     /// Roundings of an index of tiles, blocks or texels.
@@ -158,6 +194,8 @@ named! {
     FRACTION_ROUNDINGS = 6.0, at least 4.5;
     /// Roundings of what is subtracted from a position for H − point.
     FROM_POINT_ROUNDINGS = 4.0, at least 1.5;
+    /// Roundings of the coordinates on a rectangle.
+    SIDES_ROUNDINGS = 8.0, at least 2.5;
     /// Beyond a sphere's box the discriminant is below minus this share of what it would be for a circle.
     OUTLINE_SHARE = 0.1;
     /// So many roundings of all its terms lie between it and 0 there.

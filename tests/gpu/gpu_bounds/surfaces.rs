@@ -265,7 +265,7 @@ pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [BoundStatistics; 2]
         wgsl,
         &[
             "let upper = min(cosine + cosine_error, 1.0);",
-            "shade.error += glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);",
+            "shade.error += glint * (min(POWER_SLOPE * n * cosine_error / upper, 1.0) + (n + POWER_ROUNDINGS) * U);",
         ],
     );
     let (mut rng, mut items) = (Rng(9), Vec::new());
@@ -291,7 +291,7 @@ pub(crate) fn glint(gpu: &Gpu, wgsl: &str, count: usize) -> [BoundStatistics; 2]
     let upper = min(cosine + cosine_error, 1.0);
     let glint = power(upper, whole);
     let n = f32(whole);
-    let error = glint * (min(2.04 * n * cosine_error / upper, 1.0) + (n + 12.0) * U);
+    let error = glint * (min(POWER_SLOPE * n * cosine_error / upper, 1.0) + (n + POWER_ROUNDINGS) * U);
     answers[i] = vec4f(glint, error, select(0.0, 1.0, cosine > -cosine_error), 0.0);";
     let answers = run(gpu, wgsl, body, &items, &[], count, 1);
     let mut seen = ["power, exact cosine", "power, cosine is off"].map(BoundStatistics::new);
