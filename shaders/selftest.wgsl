@@ -1,4 +1,4 @@
-// What the certified path takes for granted of a device, tried out: src/gpu/selftest.rs judges the results.
+// What the certified path takes for granted of a device, tried out: src/gpu/selftest judges the results.
 
 @group(0) @binding(0) var<storage, read> operands: array<vec2u>;
 @group(0) @binding(1) var<storage, read_write> results: array<vec4u>;
@@ -48,6 +48,24 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // This product is not folded before the driver sees it; the driver may fold it.
     var folded = LITERAL_0;
     folded *= LITERAL_1;
+    // Below 2^-126 and back, by powers of two whose number no compiler knows.
+    var chain = x;
+    for (var i = 0u; i < 4u + unknown[0]; i += 1u) {
+        chain *= 0x1p-40f;
+    }
+    for (var i = 0u; i < 4u + unknown[0]; i += 1u) {
+        chain *= 0x1p40f;
+    }
+    // x + y + y/2 + y/4, each sum with its tail, in a loop: the last sum and the three tails.
+    var sums = vec4f(x, 0.0, 0.0, 0.0);
+    var term = y;
+    for (var i = 0u; i < 3u + unknown[0]; i += 1u) {
+        let total = barrier(sums.x + term);
+        let b = barrier(total - sums.x);
+        let a = barrier(total - b);
+        sums = vec4f(total, barrier(sums.x - a) + barrier(term - b), sums.yz);
+        term *= 0.5;
+    }
     let at = id.x * RESULTS / 4u;
     results[at + 0u] = vec4u(
         bitcast<u32>(x + y),
@@ -106,7 +124,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     results[at + 9u] = vec4u(
         u32(abs(x) > LITERAL_3),
         bitcast<u32>(dot(vec3f(x, LITERAL_0, y), vec3f(y, LITERAL_1, x))),
-        0u,
-        0u,
+        bitcast<u32>(chain),
+        bitcast<u32>(x * y) >> 23u & 255u,
     );
+    results[at + 10u] = bitcast<vec4u>(sums);
+    results[at + 11u] = vec4u(u32(abs(x * y) < 0x1p100f), 0u, 0u, 0u);
 }

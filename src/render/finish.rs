@@ -167,7 +167,7 @@ impl<'a, 's, 'e> Finish<'a, 's, 'e> {
     fn check(&mut self, band: &mut Band, alone: &[u32]) -> Result<(), FinishError> {
         let top = band.rows.end - 1;
         let width = (band.rgb.len() / 3 / band.rows.len()) as u32;
-        let places = spots(width, &band.rows, alone);
+        let places = spots(width, &band.rows, &band.rgb, alone);
         let (decided, _) = self.decider.pixels(top, &places, &Partials::default())?;
         for (place, decided) in places.iter().zip(decided) {
             let gpu = *three(band, *place);

@@ -51,7 +51,7 @@ fn rgb(bands: &[Band]) -> Vec<u8> {
 
 /// Column and row of a pixel that is checked in the band with these rows.
 fn checked(rows: std::ops::Range<u32>) -> [u32; 2] {
-    let place = spots(WIDTH, &rows, &[])[0];
+    let place = spots(WIDTH, &rows, &[], &[])[0];
     [place % WIDTH, rows.end - 1 - place / WIDTH]
 }
 

@@ -264,4 +264,37 @@ pub(super) const CHECKS: &[Check] = &[
             )
         },
     },
+    Check {
+        name: "x * 2^-160 * 2^160, in a loop",
+        asked: "0, or off by a subnormal's last place",
+        words: 38..39,
+        judge: |p, w| exact::chain(p.x(), f32::from_bits(w[0])),
+    },
+    Check {
+        name: "exponent of x * y",
+        asked: "that of the product or next to it, 254 or 255 where it overflows",
+        words: 39..40,
+        judge: |p, w| {
+            let [x, y] = p.ordinary()?;
+            Some(exact::exponent(x, y, w[0]))
+        },
+    },
+    Check {
+        name: "two_sum in a loop",
+        asked: "sum + tails exact",
+        words: 40..44,
+        judge: |p, w| exact::sum_in_loop(p.x(), p.y(), w),
+    },
+    Check {
+        name: "abs(x * y) < 2^100",
+        asked: "exact, and false where the product overflows",
+        words: 44..45,
+        judge: |p, w| {
+            let [x, y] = p.ordinary()?;
+            let size = (f64::from(x) * f64::from(y)).abs();
+            let border = 100f64.exp2();
+            let near = (0.999_999 * border..1.000_001 * border).contains(&size);
+            (!near).then_some(w[0] == u32::from(size < border))
+        },
+    },
 ];

@@ -131,6 +131,47 @@ pub(super) fn two_prod(x: f32, y: f32, product: f32, tail: f32) -> Option<bool> 
     Some(sum == (f64::from(x) * f64::from(y), 0.0))
 }
 
+/// x · 2⁻¹⁶⁰ · 2¹⁶⁰, by powers of two in any order: exact while nothing is subnormal, else 0 or within a last place of
+/// what is.
+pub(super) fn chain(x: f32, result: f32) -> Option<bool> {
+    // 2⁻¹²⁶ and 2⁻¹⁴⁹, times 2¹⁶⁰. Around the latter an answer says little.
+    let (smallest, place) = (34f32.exp2(), 11f32.exp2());
+    let size = x.abs();
+    if x.is_subnormal() || (place / 8.0..32.0 * place).contains(&size) {
+        return None;
+    }
+    // What was subnormal is a multiple of that place.
+    let near = (f64::from(result) - f64::from(x)).abs() <= f64::from(place);
+    let rounded = result == 0.0 || near && (result / place).fract() == 0.0;
+    Some(result == x || size < smallest && rounded)
+}
+
+/// The biased exponent of x · y.
+pub(super) fn exponent(x: f32, y: f32, found: u32) -> bool {
+    let size = (f64::from(x) * f64::from(y)).abs();
+    if size < f64::from(f32::MIN_POSITIVE) {
+        return found <= 1;
+    }
+    let right = size.log2().floor() + 127.0;
+    if right >= 255.0 {
+        return found == 254 || found == 255;
+    }
+    (f64::from(found) - right).abs() <= 1.0
+}
+
+/// x + y + y/2 + y/4, as the last sum and the tails of all three.
+pub(super) fn sum_in_loop(x: f32, y: f32, words: &[u32]) -> Option<bool> {
+    // Then f64 holds whatever is added here.
+    let inside = |v: f32| (-10f64..=12.0).contains(&f64::from(v.abs()).log2());
+    if !inside(x) || !inside(y) {
+        return None;
+    }
+    let parts: Vec<f32> = words.iter().map(|word| f32::from_bits(*word)).collect();
+    let fine = parts.iter().all(|v| *v == 0.0 || v.is_normal());
+    let found: f64 = parts.iter().map(|v| f64::from(*v)).sum();
+    Some(fine && found == f64::from(x) + 1.75 * f64::from(y))
+}
+
 /// a + b as an f64 and what is left (Knuth).
 fn normal(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;

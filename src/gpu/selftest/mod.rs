@@ -1,5 +1,5 @@
 //! Whether a device computes as the certified path takes for granted: hard operands through `shaders/selftest.wgsl`,
-//! its results against exact answers.
+//! its results against exact answers, and a small scene through its composed shader.
 //!
 //! Beside the flow: `render` asks before it trusts an adapter with certified pixels, `plumb doctor` prints the answer.
 //! The results are judged as plain data (`judge`), so that a test can hand in wrong ones.
@@ -11,6 +11,7 @@ use super::device::Gpu;
 use crate::shader::literal::literal;
 
 mod checks;
+mod composed;
 mod exact;
 mod operands;
 
@@ -19,8 +20,8 @@ use operands::operands;
 
 const SHADER: &str = include_str!("../../../shaders/selftest.wgsl");
 
-/// Words that the shader writes for each pair of operands, in fours; the last two are nothing.
-const RESULTS: usize = 40;
+/// Words that the shader writes for each pair of operands, in fours; the last three are nothing.
+const RESULTS: usize = 48;
 
 /// Invocations of a workgroup, as the shader has it; the number of pairs is a multiple.
 const WORKGROUP: usize = 64;
@@ -46,7 +47,9 @@ pub fn run(gpu: &Gpu) -> Result<Vec<Outcome>, GpuError> {
     let mut results = compute(gpu, &pairs)?;
     #[cfg(test)]
     tests::spoil(&mut results);
-    Ok(judge(&pairs, &results))
+    let mut outcomes = judge(&pairs, &results);
+    outcomes.push(composed::judge(&composed::run(gpu)?));
+    Ok(outcomes)
 }
 
 /// The checks that failed, in a line; none if all passed.
@@ -65,7 +68,13 @@ pub fn failures(outcomes: &[Outcome]) -> Option<String> {
 pub fn version() -> u64 {
     use std::hash::{DefaultHasher, Hash as _, Hasher as _};
     let mut hasher = DefaultHasher::new();
-    (SHADER, env!("CARGO_PKG_VERSION"), operands()).hash(&mut hasher);
+    (
+        SHADER,
+        env!("CARGO_PKG_VERSION"),
+        composed::SCENE,
+        operands(),
+    )
+        .hash(&mut hasher);
     hasher.finish()
 }
 

@@ -21,6 +21,24 @@ pub(super) fn spoil(results: &mut [u32]) {
     }
 }
 
+/// x · 2⁻¹⁶⁰ · 2¹⁶⁰ in steps of 2⁴⁰.
+fn chain(x: f32) -> f32 {
+    let steps = [-40f32, 40.0].map(|e| [e.exp2(); 4]);
+    steps.as_flattened().iter().fold(x, |x, step| x * step)
+}
+
+/// The sum of x, y, y/2 and y/4, and the tails of the three sums.
+fn sums_in_loop(x: f32, y: f32) -> [f32; 4] {
+    let (mut sum, mut tails) = (x, [0.0; 3]);
+    for (term, tail) in [y, 0.5 * y, 0.25 * y].into_iter().zip(&mut tails) {
+        let next = sum + term;
+        let back = next - sum;
+        *tail = (sum - (next - back)) + (term - back);
+        sum = next;
+    }
+    [sum, tails[2], tails[1], tails[0]]
+}
+
 /// What a device that rounds to nearest would write; `f32` operations of the host are such.
 fn right(pairs: &[[u32; 2]]) -> Vec<u32> {
     pairs
@@ -33,6 +51,7 @@ fn right(pairs: &[[u32; 2]]) -> Vec<u32> {
             let product = x * y;
             let rest = (f64::from(x) * f64::from(y) - f64::from(product)) as f32;
             let bits = f32::to_bits;
+            let sums = sums_in_loop(x, y).map(bits);
             [
                 bits(x + y),
                 bits(x - y),
@@ -75,6 +94,14 @@ fn right(pairs: &[[u32; 2]]) -> Vec<u32> {
                 bits(x / LITERALS[2]),
                 u32::from(x.abs() > LITERALS[3]),
                 bits(x * y + LITERALS[0] * LITERALS[1] + y * x),
+                bits(chain(x)),
+                bits(x * y) >> 23 & 255,
+                sums[0],
+                sums[1],
+                sums[2],
+                sums[3],
+                u32::from((x * y).abs() < 100f32.exp2()),
+                0,
                 0,
                 0,
             ]
@@ -93,7 +120,7 @@ fn right_results_pass_and_every_check_has_cases() {
     }
     // Every word is looked at.
     let words: Vec<usize> = CHECKS.iter().flat_map(|c| c.words.clone()).collect();
-    assert_eq!(words, (0..RESULTS - 2).collect::<Vec<_>>());
+    assert_eq!(words, (0..RESULTS - 3).collect::<Vec<_>>());
 }
 
 /// One word of one pair wrong: the check that looks at it fails, and no other.
@@ -181,6 +208,67 @@ fn a_last_place_is_noticed() {
         assert_eq!(judged("x * y", at(small, 0.5), &[word]), Some(true));
     }
     assert_eq!(judged("x * y", at(small, 2.0), &[0]), Some(false));
+}
+
+/// Answers of devices that take chains, overflow and compensated sums for something else.
+#[test]
+fn wrong_ranges_and_lost_tails_are_noticed() {
+    let judged = |name: &str, x: f32, y: f32, words: &[u32]| {
+        let pair = Pair {
+            a: x.to_bits(),
+            b: y.to_bits(),
+        };
+        let check = CHECKS.iter().find(|check| check.name == name).unwrap();
+        (check.judge)(pair, words)
+    };
+    let chain =
+        |x: f32, result: f32| judged("x * 2^-160 * 2^160, in a loop", x, 0.0, &[result.to_bits()]);
+    // Kept, flushed, or rounded to the next subnormal.
+    for result in [1.0, 0.0, 2048.0] {
+        assert_eq!(chain(1.0, result), Some(true), "{result}");
+    }
+    // Lifted to the least normal number, or rounded where nothing is subnormal.
+    assert_eq!(chain(1.0, 34f32.exp2()), Some(false));
+    assert_eq!(chain(35f32.exp2(), 0.0), Some(false));
+    assert_eq!(chain(35f32.exp2(), 35f32.exp2().next_up()), Some(false));
+    let exponent = |x, y, found| judged("exponent of x * y", x, y, &[found]);
+    let huge = 100f32.exp2();
+    for (found, passes) in [(255, true), (254, true), (227, false), (0, false)] {
+        assert_eq!(exponent(huge, huge, found), Some(passes), "{found}");
+    }
+    assert_eq!(exponent(1.0 / huge, 1.0 / huge, 0), Some(true));
+    assert_eq!(exponent(1.0 / huge, 1.0 / huge, 27), Some(false));
+    let below = |x, y, holds| judged("abs(x * y) < 2^100", x, y, &[holds]);
+    assert_eq!(below(huge, huge, 0), Some(true));
+    assert_eq!(below(huge, huge, 1), Some(false));
+    // A compiler that knows sums of real numbers finds no tails.
+    let (x, y) = (1.0, (1.0 / 512.0_f32).next_up());
+    let words = sums_in_loop(x, y);
+    let sums = |words: [f32; 4]| judged("two_sum in a loop", x, y, &words.map(f32::to_bits));
+    assert_eq!(sums(words), Some(true));
+    assert!(words[1..].iter().any(|tail| *tail != 0.0));
+    assert_eq!(sums([words[0], 0.0, 0.0, 0.0]), Some(false));
+}
+
+/// The composed picture's judge: a wrong byte that is sure, pixels in doubt or missing; and a byte in doubt may be
+/// anything.
+#[test]
+fn a_wrong_picture_is_noticed() {
+    let tried = |change: &dyn Fn(&mut Vec<[u8; 4]>)| {
+        let right = vec![[1, 2, 3]; 100];
+        let mut found = vec![[1, 2, 3, 0]; 100];
+        change(&mut found);
+        composed::judge(&composed::Tried { right, found }).failure
+    };
+    assert_eq!(tried(&|_| ()), None);
+    assert_eq!(tried(&|found| found[7] = [9, 9, 9, 255]), None);
+    assert!(tried(&|found| found[7][1] = 3).unwrap().contains("pixel 7"));
+    assert!(
+        tried(&|found| found[..11].fill([1, 2, 3, 255]))
+            .unwrap()
+            .contains("only 89")
+    );
+    assert!(tried(&|found| _ = found.pop()).unwrap().contains("missing"));
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn another_viewpoint_is_another_shader_only_where_the_camera_is_in_the_text() {
 #[test]
 fn what_is_not_used_is_not_there() {
     // (a word of the feature, who may have it)
-    let lit = |i| matches!(i, Mirror | Glass | Glint | LampInFloor);
+    let lit = |i| matches!(i, Mirror | Glass | Glint | LampInFloor | LampOverFloor);
     let words: &[(&str, &dyn Fn(Ingredient) -> bool)] = &[
         ("plane_hits(", &|i| {
             matches!(
@@ -194,6 +194,7 @@ fn what_is_not_used_is_not_there() {
                     | Coplanar
                     | Mirror
                     | LampInFloor
+                    | LampOverFloor
             )
         }),
         ("rectangle_hits", &|i| {
