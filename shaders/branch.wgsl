@@ -50,9 +50,9 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
     (*traced).color += share * lit.color;
 //#if certified
     (*traced).error += share
-        * (lit.error * (1.0 + ended.weight_error)
-        + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + 12.0 * U))
-        + 2.0 * U * (*traced).color;
+        * (lit.error * (SECOND_ORDER + ended.weight_error)
+        + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + SHARE_ROUNDINGS * U))
+        + SUM_ROUNDINGS * U * (*traced).color;
 //#end
 }
 //#if mirror
@@ -83,14 +83,14 @@ fn mirror_branch(ended: Branch, at: PathPoint, specular: vec3f) -> Branch {
     mirror.weight = barrier(ended.weight * specular);
     doubt |= !ordinary(ended.weight, specular, mirror.weight);
     mirror.ray.dir = barrier(2.0 * along * point.normal + ended.ray.dir);
-    mirror.ray.dir_error = (1.0 + 5.0 * (point.normal_error + U)) * ended.ray.dir_error + 4.04 * point.normal_error
-        + MIRROR_ROUNDINGS * U;
+    mirror.ray.dir_error = (1.0 + MIRROR_STRETCH * (point.normal_error + U)) * ended.ray.dir_error
+        + MIRROR_TURN * point.normal_error + MIRROR_ROUNDINGS * U;
     // A mirror is an isometry: how far off the line is does not depend on the angle at which it is met.
-    mirror.ray.base_error = (1.0 + 4.0 * U) * (ended.ray.base_error + at.slip.x);
+    mirror.ray.base_error = (1.0 + LINE_ROUNDINGS * U) * (ended.ray.base_error + at.slip.x);
     mirror.ray.start_error = at.t_error + at.slip.y;
     mirror.ray.size = point.size;
     mirror.total_error = ended.total_error + at.slip.y;
-    mirror.weight_error = ended.weight_error + 2.0 * U;
+    mirror.weight_error = ended.weight_error + WEIGHT_ROUNDINGS * U;
 //#else
     mirror.weight = ended.weight * specular;
     mirror.ray.dir = 2.0 * along * point.normal + ended.ray.dir;
@@ -110,11 +110,11 @@ fn through_branch(ended: Branch, at: PathPoint, transparency: f32) -> Branch {
     let base = barrier(ended.ray.base + at.t * ended.ray.dir);
     let slip = at.t * ended.ray.dir_error + POSITION_ROUNDINGS * U * (ended.ray.size + at.t);
     through.ray.base = base;
-    through.ray.base_error = (1.0 + 4.0 * U) * (ended.ray.base_error + slip);
+    through.ray.base_error = (1.0 + LINE_ROUNDINGS * U) * (ended.ray.base_error + slip);
     through.ray.start_error = at.t_error + slip;
     through.ray.size = abs(base.x) + abs(base.y) + abs(base.z);
     through.total_error = ended.total_error + slip;
-    through.weight_error = ended.weight_error + 5.0 * U;
+    through.weight_error = ended.weight_error + PANE_WEIGHT_ROUNDINGS * U;
 //#else
     through.ray.base = point.position;
 //#end
@@ -158,7 +158,7 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
         ended.total_error += at.t_error; //~
         add_shade(traced, ended, material.kept, lit);
 //#if certified
-        if doubt | (ended.total_error > 0.01 * ended.total) | (ended.total < TOTAL_LEAST) {
+        if doubt | (FIRST_ORDER * ended.total_error > ended.total) | (ended.total < TOTAL_LEAST) {
             (*traced).verdict = UNDECIDED;
             break;
         }
@@ -178,7 +178,7 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
 //#end
 //#if certified
         let short = MAX_PATH - branch.total;
-        let short_sure = abs(short) > ended.total_error + 2.0 * U * MAX_PATH;
+        let short_sure = abs(short) > ended.total_error + PATH_ROUNDINGS * U * MAX_PATH;
         if doubt | ((mirrors | passes) & !short_sure) {
             // Whether the path ends here is not certain, or a weight is not known.
             (*traced).verdict = UNDECIDED;

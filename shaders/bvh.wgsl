@@ -2,8 +2,12 @@
 
 //#insert struct BvhNode
 
+// The slack of a box's near and far side: the roundings of the test are relative, a few ulp.
+const BVH_NEAR = 0.999998;
+const BVH_FAR = 1.000004;
+
 // Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir
-// by components. The roundings of the test are relative, a few ulp; the slack covers them.
+// by components.
 fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
     let base = (*walk).base;
     let inverse = (*walk).inverse;
@@ -17,7 +21,7 @@ fn bvh_enters(index: u32, walk: ptr<function, Walk>) -> f32 {
     let high = max(a, b);
     let near = max(max(low.x, low.y), max(low.z, 0.0));
     let far = min(min(high.x, high.y), high.z);
-    return select(-1.0, near * 0.999998, near <= far * 1.000004);
+    return select(-1.0, near * BVH_NEAR, near <= far * BVH_FAR);
 }
 
 // A walk down the tree: the boxes that wait, the one looked at, and the leaf found.
@@ -45,7 +49,7 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, ray: SecondaryRay) {
     (*walk).pad = SECOND_ORDER * (ray.base_error + ray.start_error + ray.dir_error * (ray.size + BVH_SIZE))
-        + 4.0 * U * (ray.size + BVH_SIZE);
+        + BOX_ROUNDINGS * U * (ray.size + BVH_SIZE);
 }
 //#end
 

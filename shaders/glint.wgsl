@@ -6,8 +6,8 @@
 const LOG2_E_TWICE = 2.885390081777927;
 const LN_2 = 0.6931471805599453;
 
-// (1 − y)ⁿ or 2⁻¹⁰⁰, whichever is more, for y from 0 up to 1 and n up to MOST_SHININESS; and what share of that it may be
-// off by. Sums and products alone: what a driver's own functions are off by need not be known.
+// (1 − y)ⁿ or 2⁻¹⁰⁰, whichever is more, for y from 0 up to 1 and n up to MOST_SHININESS; and what share of that it may
+// be off by. Sums and products alone: what a driver's own functions are off by need not be known.
 fn power(y: f32, n: f32) -> vec2f {
     // x = m·2^e, m from √½ to √2.
     let x = barrier1(1.0 - y);
@@ -31,11 +31,12 @@ fn power(y: f32, n: f32) -> vec2f {
 fn glint_power(half: vec3f, half_error: f32, normal: vec3f, normal_error: f32, n: f32) -> vec2f {
     let half_2 = dot(half, half);
     let half_inverse = inverseSqrt(max(half_2, TINY_SQUARE));
-    doubt |= !(half_2 * half_inverse > 4.0 * half_error) | (n > MOST_SHININESS);
+    doubt |= !(half_2 * half_inverse > CLOSE_FROM * half_error) | (n > MOST_SHININESS);
     let apart = barrier(barrier(half * half_inverse) - normal);
     let apart_2 = dot(apart, apart);
     let distance = apart_2 * inverseSqrt(max(apart_2, TINY_SQUARE));
-    let off = 1.4 * half_error * half_inverse + normal_error + DIRECTION_ROUNDINGS * U + APART_ROUNDINGS * U * distance;
+    let off = CLOSE * half_error * half_inverse + normal_error + DIRECTION_ROUNDINGS * U
+        + APART_ROUNDINGS * U * distance;
     let near = max(distance - off, 0.0);
     let y = barrier1(0.5 * near * near);
     if y >= 1.0 {

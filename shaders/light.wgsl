@@ -49,7 +49,7 @@ fn shadow(ray: SecondaryRay, range_: Range) -> Shadow {
         // Where the product is flushed little is lost (FLUSHED), and `open` says that the glint shines through all the
         // same.
         transmittance *= materials[tile_material(blocker)].tint * material.transparency;
-        roundings += 4.0; //~
+        roundings += PANE_ROUNDINGS; //~
         range.skip = blocker.group;
         range.beyond = hit.t;
         range.beyond_error = hit.error; //~
@@ -86,19 +86,19 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let d = toward * inverse;
     var c = dot(d, point.normal);
 //#if certified
-    let toward_error = point.error + U * (light.size + 2.0 * distance);
-    if !(distance > 4.0 * toward_error) | (inverse > LIGHT_NEAREST) {
+    let toward_error = point.error + U * (light.size + TOWARD_ROUNDINGS * distance);
+    if !(distance > CLOSE_FROM * toward_error) | (inverse > LIGHT_NEAREST) {
         doubt = true;
         return shade;
     }
-    let d_error = 1.4 * toward_error * inverse + DIRECTION_ROUNDINGS * U;
-    let distance_error = toward_error + DIRECTION_ROUNDINGS * U * distance;
+    let d_error = CLOSE * toward_error * inverse + DIRECTION_ROUNDINGS * U;
+    let distance_error = toward_error + LIMIT_ROUNDINGS * U * distance;
     var c_error = d_error + point.normal_error + DOT_ROUNDINGS * U;
 //#if low_light
     // The height over the distance: of the point's error only what is along the way to the light counts.
     let low = (bit & point.low_light) != 0u;
     c = select(c, point.height * inverse, low);
-    c_error = select(c_error, abs(c) * (1.4 * distance_error * inverse + HEIGHT_ROUNDINGS * U), low);
+    c_error = select(c_error, abs(c) * (HEIGHT_SLOPE * distance_error * inverse + HEIGHT_ROUNDINGS * U), low);
 //#end
     if c < -c_error {
         return shade;
@@ -112,7 +112,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#if cone
     let inside = -dot(d, light.axis) - light.cosine;
 //#if certified
-    let inside_error = d_error + (DOT_ROUNDINGS + 3.0) * U;
+    let inside_error = d_error + CONE_ROUNDINGS * U;
     if light.cosine >= -1.0 {
         if inside < -inside_error {
             return shade;
@@ -138,14 +138,14 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let full = diffuse * light.emissivity * blocked.transmittance * (inverse * CAMERA_UNIT);
     shade.color = full * max(c, 0.0);
     shade.error = full //~
-        * (c_error + max(c, 0.0) * (1.4 * distance_error * inverse + (24.0 + blocked.roundings) * U)); //~
+        * (c_error + max(c, 0.0) * (CLOSE * distance_error * inverse + (LIGHT_ROUNDINGS + blocked.roundings) * U)); //~
 //#if glint
     let material = materials[objects[point.object].material];
     if material.shininess > 0.0 {
 //#if certified
         // The way back is where the ray came from.
         let half = barrier(d - seen.dir);
-        let half_error = seen.dir_error + d_error + 2.0 * U;
+        let half_error = seen.dir_error + d_error + HALF_ROUNDINGS * U;
         let most = glint_power(half, half_error, point.normal, point.normal_error, material.shininess);
         let glint = material.specular * light.emissivity * most.x;
         shade.color += glint;

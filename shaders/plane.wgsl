@@ -74,9 +74,9 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let ahead_error = ray.base_error + PLANE_ROUNDINGS * U * (abs(plane.offset) + ray.size);
     let along_error = ray.dir_error + PLANE_ROUNDINGS * U;
     // Unless it is seen edge-on, t is known to within `error`.
-    let steep = (abs(along) > 2.0 * along_error) & (abs(t) < FARTHEST);
-    let slope = abs(inverse) * (1.0001 + 2.0 * along_error * abs(inverse));
-    let error = (ahead_error + abs(t) * along_error) * slope + 8.0 * U * abs(t);
+    let steep = (abs(along) > STEEP * along_error) & (abs(t) < FARTHEST);
+    let slope = abs(inverse) * (GROWTH + STEEP_SLOPE * along_error * abs(inverse));
+    let error = (ahead_error + abs(t) * along_error) * slope + DISTANCE_ROUNDINGS * U * abs(t);
     let start = error + ray.start_error;
     var out = (steep & (t < -start)) | (plane.group == range.skip) | ((plane.lights_on_surface & range.light) != 0u);
 //#if low_light
@@ -87,7 +87,7 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let in = steep & (t > start) & !out;
     intersection.error = error;
     // A plane seen edge-on is met far away, if at all.
-    intersection.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * 0.999999, t - error,
+    intersection.low = select(max(abs(ahead) - ahead_error, 0.0) / (abs(along) + along_error) * LOWERED, t - error,
         steep);
 //#if transparent
     intersection.high = select(T_MAX, t + error, steep);

@@ -67,7 +67,7 @@ fn complete(point: ptr<function, Point>) {
     if (object.place & SPHERE_BIT) == 0u {
         let plane = world_planes[object.place];
         (*point).normal = plane.normal;
-        (*point).normal_error = 2.0 * U; //~
+        (*point).normal_error = PLANE_NORMAL_ROUNDINGS * U; //~
         (*point).position = (*point).position * plane.axis_mask + plane.fixed_coordinate;
 //#if low_light
         (*point).low_light = plane.low_light; //~
@@ -111,7 +111,8 @@ fn locate_secondary(ray: SecondaryRay, hit: SecondaryHit) -> Point {
         let normal = sphere_normal_from(sphere, ray);
         on_sphere(&point, normal);
         point.position = barrier(sphere.center + sphere.radius * normal.xyz);
-        point.error = SECOND_ORDER * sphere.radius * normal.w + POSITION_ROUNDINGS * U * sphere.size; //~
+        point.error = SECOND_ORDER * sphere.radius * normal.w //~
+            + POSITION_ROUNDINGS * U * (sphere.size + sphere.radius); //~
     }
 //#end
 //#if certified

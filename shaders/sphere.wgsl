@@ -101,7 +101,7 @@ fn closest_approach(center: vec3f, radius: f32, size: f32, ray: SecondaryRay) ->
 //#if certified
     let far = abs(approach.along) + radius;
     approach.off = SECOND_ORDER * ray.base_error + U * size
-        + far * ((2.05 + 2.0 * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
+        + far * ((TURN + TURN_MORE * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
 //#end
     return approach;
 }
@@ -112,7 +112,7 @@ fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Int
     let approach = closest_approach(sphere.center, sphere.radius, sphere.size, ray);
     let disc = sphere.radius * sphere.radius - approach.apart;
 //#if certified
-    let disc_error = approach.off * (2.01 * sphere.radius + approach.off)
+    let disc_error = approach.off * (SQUARE_SLOPE * sphere.radius + approach.off)
         + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let least = barrier1(max(disc, disc_error));
     let inverse_root = inverseSqrt(least);
@@ -158,7 +158,7 @@ fn sphere_normal_from(sphere: WorldSphere, ray: SecondaryRay) -> vec4f {
     let root = disc * inverse_root;
     let normal = barrier((approach.perpendicular + root * ray.dir) * -sphere.inverse_radius);
 //#if certified
-    let disc_error = approach.off * (2.01 * sqrt(approach.apart) + approach.off)
+    let disc_error = approach.off * (SQUARE_SLOPE * sqrt(approach.apart) + approach.off)
         + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
     let error = SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);

@@ -66,7 +66,7 @@ fn length3(v: vec3f) -> f32 {
 //#if whole
 
 // floor(index), from the nearest whole number and the side of it that the index lies on: where that side is certain the
-// floor is, however often the driver rounds the index anew.
+// floor is. (Behind a barrier the index is one number, and its difference from the nearest whole number exact.)
 fn floor3(index: vec3f) -> vec3f {
     let nearest = round(index);
     return nearest - select(vec3f(0.0), vec3f(1.0), index - nearest < vec3f(0.0));
@@ -121,7 +121,8 @@ fn index_table_odd(word: u32) -> vec3f {
 // Whether a tile is of the plane's own material.
 fn tplane_foreground(plane: Tiled, point: Point) -> bool {
     let position = point.position;
-    let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
+    var index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);
+    index = barrier(vec3f(index, 0.0)).xy; //~
     var margin = abs(index - round(index)) - (plane.row_lengths * index_error(point) + plane.errors); //~
     var whole = floor3(vec3f(index, plane.parity + 0.5));
 //#if tables
@@ -151,7 +152,8 @@ struct PlanePoint {
 
 // Parities of floor(2·H + 1000), each 0 or 1, for the axes asked for (1, else 0).
 fn pplane_odd(at: PlanePoint, axes: vec3f) -> vec3f {
-    let index = at.point.position * at.plane.per_unit + at.plane.fraction;
+    var index = at.point.position * at.plane.per_unit + at.plane.fraction;
+    index = barrier(index); //~
     var whole = floor3(index);
 //#if certified
     var margin = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);
@@ -188,6 +190,7 @@ fn pplane_from_point(at: PlanePoint) -> vec3f {
 fn texel(plane: Texplane, point: Point) -> vec3f {
     let position = point.position;
     var index = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
+    index = barrier(vec3f(index, 0.0)).xy; //~
     let size = vec2f(plane.size);
 //#if certified
     // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
@@ -204,7 +207,7 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
         margin = select(margin, vec2f(1.0), known);
     }
 //#end
-    certain(vec3f(margin, 1048576.0 - max(abs(index.x), abs(index.y))));
+    certain(vec3f(margin, MOST_INDEX - max(abs(index.x), abs(index.y))));
 //#end
     var p = floor3(vec3f(index, 0.5)).xy;
     if plane.repeats != 0u {
@@ -238,7 +241,7 @@ fn color_wheel(x_: f32, y_: f32, error: f32) -> Shade {
     let y = v.y;
     let square = x * x + y * y;
 //#if certified
-    if !(square > 1024.0 * error * error + TINY_SQUARE) {
+    if !(square > WHEEL_FAR * error * error + TINY_SQUARE) {
         doubt = true;
         return shade;
     }
@@ -254,7 +257,7 @@ fn color_wheel(x_: f32, y_: f32, error: f32) -> Shade {
     shade.color =
         max(vec3f(1.0 + cosine, 1.0 - 0.5 * cosine - HALF_ROOT_3 * sine, 1.0 - 0.5 * cosine + HALF_ROOT_3 * sine),
         vec3f(0.0));
-    shade.error = vec3f(3.0 * error * inverseSqrt(square) + WHEEL_ROUNDINGS * U); //~
+    shade.error = vec3f(WHEEL_SLOPE * error * inverseSqrt(square) + WHEEL_ROUNDINGS * U); //~
     return shade;
 }
 

@@ -23,7 +23,7 @@ fn shade(point: Point, seen: SecondaryRay) -> Shade {
         }
         let term = light_term(i, point, seen, diffuse);
         sum.color += term.color;
-        sum.error += term.error + 2.0 * U * sum.color; //~
+        sum.error += term.error + SUM_ROUNDINGS * U * sum.color; //~
     }
     return sum;
 }
@@ -58,7 +58,7 @@ fn hit_decides(traced: ptr<function, Traced>, ray: Ray, hit: Hit) -> bool {
         // Other samples may be brighter: it brings something from 0 to as much as it may be.
         let most = max(hit.inverse + hit.error, hit.rival) * ray.inverse_length * BRIGHT;
         (*traced).color = vec3f(0.5 * most);
-        (*traced).error = vec3f(0.51 * most);
+        (*traced).error = vec3f(HALF_OPEN * most);
 //#end
         return true;
     }
@@ -118,7 +118,8 @@ fn ray_trace(ray: Ray) -> Traced {
     let lit = shade(locate(ray, hit), as_secondary_ray(ray));
     let share = CAMERA_GAIN / t;
     traced.color = share * lit.color;
-    traced.error = share * (lit.error + lit.color * (SECOND_ORDER * t_error / t + 12.0 * U)); //~
+    traced.error = share //~
+        * (SECOND_ORDER * lit.error + lit.color * (SECOND_ORDER * t_error / t + SHARE_ROUNDINGS * U)); //~
     doubt |= t < TOTAL_LEAST; //~
 //#end
     traced.error += FLUSHED; //~

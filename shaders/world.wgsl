@@ -158,7 +158,8 @@ fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
 
 // Whether nothing else can be nearer than what was met, or nothing at all is met.
 fn surely_closest(hit: SecondaryHit) -> bool {
-    return (hit.rival - hit.t > hit.error + 4.0 * U * abs(hit.t)) | ((hit.object == NOTHING) & (hit.rival >= T_MAX));
+    return (hit.rival - hit.t > hit.error + RIVAL_ROUNDINGS * U * abs(hit.t))
+        | ((hit.object == NOTHING) & (hit.rival >= T_MAX));
 }
 //#end
 //#if any_hit

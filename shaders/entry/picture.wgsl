@@ -4,7 +4,8 @@
 // Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.
 fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
     (*sum).color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), counts);
-    (*sum).error += select(vec3f(0.0), one.error * (1.01 / f32(SAMPLES)), counts) + 3.0 * U * (*sum).color;
+    (*sum).error += select(vec3f(0.0), one.error * (SAMPLE_GROWTH / f32(SAMPLES)), counts)
+        + SAMPLE_ROUNDINGS * U * (*sum).color;
 }
 //#end
 //#if quad
@@ -72,7 +73,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
 //#else
         traced.color += one.color * (1.0 / f32(SAMPLES));
-        traced.error += one.error * (1.01 / f32(SAMPLES)) + 3.0 * U * traced.color; //~
+        traced.error += one.error * (SAMPLE_GROWTH / f32(SAMPLES)) + SAMPLE_ROUNDINGS * U * traced.color; //~
         traced.verdict |= one.verdict;
         if traced.verdict != 0u {
             break;

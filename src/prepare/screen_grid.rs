@@ -36,6 +36,11 @@ const CLEARANCE: f64 = 1.0 + 1e-5;
 /// How far the end of an outline may be off: relatively, and in pixels.
 const PAD: f64 = 1e-9;
 const PAD_PIXELS: f64 = 1e-3;
+/// The same, for a unit of |w| + |o|: the way from there to pixels.
+const PAD_WAY: f64 = 1e-13;
+
+/// What the largest 1/s of a sphere is multiplied by.
+const INVERSE_GROWTH: f64 = 1.0 + 1e-6;
 
 /// Pixels nearer together than this are beyond what is known of outlines: then a sphere is in every list.
 const LEAST_STEP: f64 = 1e-100;
@@ -236,7 +241,7 @@ impl Outlines {
             return Some((f32::MAX, everywhere));
         }
         // H.z = −d·s is at most that of the sphere's nearest point.
-        let nearest = (d / (depth - r) * (1.0 + 1e-6)).min(f64::from(f32::MAX) * 0.9);
+        let nearest = (d / (depth - r) * INVERSE_GROWTH).min(f64::from(f32::MAX) * 0.9);
         let max_inverse = (nearest as f32).next_up();
         // The planes through the viewpoint and a column's or row's rays touch the sphere at W_i = d·(c·z ± r·√(c² + z²
         // − r²))/ (z² − r²), z the depth: docs/NUMERICS.md.
@@ -249,7 +254,7 @@ impl Outlines {
             let pad = PAD * (middle.abs() + root);
             let pixel = |w: f64, sign: f64| {
                 let w = d * (w + sign * pad) / square;
-                let pad = 1e-13 * (w.abs() + self.offset[i].abs());
+                let pad = PAD_WAY * (w.abs() + self.offset[i].abs());
                 let at = self.anchor[i] + (w - self.offset[i] + sign * pad) / self.step[i];
                 at + sign * (self.margin + PAD_PIXELS)
             };

@@ -66,12 +66,12 @@ impl Bounded {
             }
             let off = one - root;
             if off.value.abs() + off.error < NEAR_ONE {
-                // (1 − ε)ˢ = 1 − sε − s(1 − s)/2·ε² − …, what is left out is at most 0.07·|ε|³ for 0 ≤ s ≤ 1.
+                // (1 − ε)ˢ = 1 − sε − s(1 − s)/2·ε² − …, what is left out is at most CUBIC·|ε|³ for 0 ≤ s ≤ 1.
                 let s = Self::exact(exponent);
                 let bend = s * (one - s) * Self::exact(0.5);
                 let mut rest = one - off * (s + bend * off);
                 let wide = off.value.abs() + off.error;
-                rest.error += 0.07 * wide * wide * wide;
+                rest.error += CUBIC * wide * wide * wide;
                 return result * rest;
             }
             root = root.sqrt();
@@ -96,6 +96,15 @@ const NEARLY: f64 = 1.0 / 1_048_576.0;
 
 /// Where a root counts as near to 1.
 const NEAR_ONE: f64 = 1.0 / 131_072.0;
+
+/// The binomial series' next term there, for a unit of the third power.
+const CUBIC: f64 = 0.07;
+
+/// What the margin of a byte is larger by, relatively, for its own roundings.
+const BYTE_GROWTH: f64 = 1e-12;
+
+/// Roundings of 255 times a value, and of its distance from a whole number.
+const BYTE_ROUNDINGS: f64 = 4.0;
 
 impl Add for Bounded {
     type Output = Self;
@@ -328,8 +337,9 @@ impl Real for Bounded {
     #[inline(always)]
     fn byte(self) -> Result<u8, Undecided> {
         let scaled = 255.0 * self.value;
-        // The product's rounding and those below are within 4u of it.
-        let margin = (255.0 * (Self::GROW + 1e-12)) * self.error + (4.0 * U) * scaled.abs();
+        // The product's rounding and those below are within BYTE_ROUNDINGS·u of it.
+        let margin =
+            (255.0 * (Self::GROW + BYTE_GROWTH)) * self.error + (BYTE_ROUNDINGS * U) * scaled.abs();
         if scaled + margin < 1.0 {
             return Ok(0);
         }

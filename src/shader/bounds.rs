@@ -5,18 +5,44 @@ use crate::prepare::plane::Step;
 use crate::real::Bounded;
 use crate::real::rational::ratio;
 
+/// A constant of an error bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constant {
+    /// Its name here, in the shader's text and in docs/NUMERICS.md.
+    pub name: &'static str,
+    /// What it is.
+    pub value: f64,
+    /// What it has to be at least, by its derivation; of limits that are chosen, and of what is a fact, the same.
+    pub least: f64,
+}
+
 macro_rules! named {
-    ($($(#[doc = $doc:literal])+ $name:ident = $value:expr;)+) => {
+    (
+        $(#[doc = $about:literal])+
+        $list:ident:
+        $($(#[doc = $doc:literal])+ $name:ident = $value:expr $(, at least $least:expr)?;)+
+    ) => {
         $($(#[doc = $doc])+ pub const $name: f64 = $value;)+
 
-        /// The constants that the shader's text refers to by name.
-        pub const NAMED: &[(&str, f64)] = &[$((stringify!($name), $name)),+];
+        $(#[doc = $about])+
+        pub const $list: &[Constant] = &[$(Constant {
+            name: stringify!($name),
+            value: $name,
+            least: named!(@least $name $($least)?),
+        }),+];
     };
+    (@least $name:ident) => { $name };
+    (@least $name:ident $least:expr) => { $least };
 }
 
 named! {
-    /// What + − × may be off by, relatively: the results are faithfully rounded.
-    U = 1.0 / 8_388_608.0;
+    /// The constants that the shader's text refers to by name.
+    NAMED:
+    /// What a bound is larger by, for the roundings of itself and of the bounds and tests that it goes into: fewer than
+    /// 800, of 838.
+    GROWTH = 1.0001, at least 1.0;
+    /// What + − × may be off by, relatively (`ROUNDING`), and what bounds' own roundings may take.
+    U = ROUNDING * GROWTH, at least ROUNDING;
     /// What a square root is taken of is at least this.
     TINY_SQUARE = 1.0 / (1_u128 << 110) as f64;
     /// Secondary hits farther than this are left to the CPU.
@@ -25,80 +51,188 @@ named! {
     LEAST_INVERSE = 1.0 / (1_u64 << 40) as f64;
     /// Directions that are known less well than this are not followed: the bounds are first order there.
     DIR_LIMIT = 1.0 / 128.0;
-    /// Hits whose 1/s is less than this many times its bound are left to the CPU where their error goes on: the bounds
-    /// that follow are first order.
+    /// What is less than this many times its bound is left to the CPU where its error goes on: the bounds that follow
+    /// are first order.
     FIRST_ORDER = 128.0;
     /// What a bound of the first order is multiplied by: products of two errors are below a hundredth of it.
-    SECOND_ORDER = 1.01;
+    SECOND_ORDER = 1.01, at least 128.0 / 127.0;
     /// The error of a root is at most this times the square's over the root.
-    ROOT_NEAR = 1.01;
+    ROOT_NEAR = 1.01, at least 1.0;
     /// The same where the square is above `ROOT_FAR_FROM` times its error.
-    ROOT_FAR = 0.54;
+    ROOT_FAR = 0.54, at least 0.5359;
     /// See `ROOT_FAR`.
     ROOT_FAR_FROM = 4.0;
     /// Roundings of the position of a primary hit, for a unit of its distance.
-    HIT_ROUNDINGS = 5.0;
+    HIT_ROUNDINGS = 5.0, at least 4.5;
     /// The least and the largest biased exponent that a ray's weight may have in f32: it is from 2⁻⁸⁶ up to 2⁵.
     WEIGHT_LEAST = 127.0 - 86.0;
     /// See `WEIGHT_LEAST`.
     WEIGHT_MOST = 127.0 + 4.0;
     /// What products that f32 flushes may take from a lit pixel's value, where 255 is a full byte.
-    FLUSHED = 1.0 / (1_u64 << 26) as f64;
+    FLUSHED = 1.0 / (1_u64 << 26) as f64, at least 1.0 / (1_u64 << 27) as f64;
     /// Roundings of a dot product with a plane, of its sum with an offset.
-    PLANE_ROUNDINGS = 6.0;
+    PLANE_ROUNDINGS = 6.0, at least 5.5;
+    /// A plane is not seen edge-on where the cosine is more than this many times its bound.
+    STEEP = 2.0;
+    /// 1/(1 − x) is at most 1 + this times x, for x up to 1/`STEEP`.
+    STEEP_SLOPE = 2.0, at least 2.0;
+    /// Roundings of the distance of a plane.
+    DISTANCE_ROUNDINGS = 8.0, at least 6.0;
+    /// What a bound from below is multiplied by, for the roundings of a sum, a quotient and the tests it goes into.
+    LOWERED = 0.999999, at least 1.0 - 7.5 * ROUNDING;
+    /// Roundings of the distances that are compared with that of the closest hit.
+    RIVAL_ROUNDINGS = 4.0, at least 3.0;
     /// Roundings of base + t·dir.
-    POSITION_ROUNDINGS = 5.0;
+    POSITION_ROUNDINGS = 5.0, at least 4.5;
+    /// Roundings of the normal of a plane.
+    PLANE_NORMAL_ROUNDINGS = 2.0, at least 0.5;
+    /// How far the perpendicular from a ray to a center turns with the direction, to the first order.
+    TURN = 2.05, at least 2.0;
+    /// The same, to the second order.
+    TURN_MORE = 2.0;
     /// Roundings of the perpendicular from a ray to a center.
-    PERPENDICULAR_ROUNDINGS = 12.0;
+    PERPENDICULAR_ROUNDINGS = 12.0, at least 11.0;
+    /// x² − y² is at most |x − y|·(this·x + |x − y|).
+    SQUARE_SLOPE = 2.01, at least 2.0;
     /// Roundings of r² − |perpendicular|².
-    DISC_ROUNDINGS = 12.0;
+    DISC_ROUNDINGS = 12.0, at least 9.0;
     /// Roundings of a root by `inverseSqrt`, and what is added to it.
-    ROOT_ROUNDINGS = 10.0;
+    ROOT_ROUNDINGS = 10.0, at least 7.5;
     /// Roundings of a unit normal.
-    NORMAL_ROUNDINGS = 5.0;
+    NORMAL_ROUNDINGS = 5.0, at least 4.5;
     /// Roundings of a vector divided by its length.
-    DIRECTION_ROUNDINGS = 8.0;
+    DIRECTION_ROUNDINGS = 8.0, at least 7.5;
     /// Roundings of a dot product of unit vectors.
-    DOT_ROUNDINGS = 5.0;
+    DOT_ROUNDINGS = 5.0, at least 4.0;
     /// Roundings of a height and its quotient by a distance, but for the distance's.
-    HEIGHT_ROUNDINGS = 2.0;
-    /// Roundings of a mirrored direction.
-    MIRROR_ROUNDINGS = 18.0;
-    /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
-    BOUNCE_ROUNDINGS = 30.0;
+    HEIGHT_ROUNDINGS = 2.0, at least 1.75;
+    /// Lights, and what else a direction leads to, are farther away than this many times the bound of that.
+    CLOSE_FROM = 4.0;
+    /// 1/(1 − x) for x up to 1/`CLOSE_FROM`.
+    CLOSE = 1.4, at least 4.0 / 3.0;
+    /// 1/(1 − x)² is at most 1 + (this + `CLOSE`)·x for x up to 1/`CLOSE_FROM`.
+    HEIGHT_SLOPE = 1.75, at least 28.0 / 9.0 - CLOSE;
+    /// Roundings of the difference of two positions.
+    TOWARD_ROUNDINGS = 2.0, at least 1.0;
+    /// Roundings of the distance of a light, which ends a shadow ray, and of what is compared with it.
+    LIMIT_ROUNDINGS = 11.0, at least 10.5;
+    /// Roundings of how far a direction is inside of a cone.
+    CONE_ROUNDINGS = 8.0, at least 6.0;
+    /// Roundings of what a light brings.
+    LIGHT_ROUNDINGS = 24.0, at least 8.5;
+    /// Roundings that a pane adds to the light that it lets through.
+    PANE_ROUNDINGS = 4.0, at least 3.0;
+    /// Roundings of the difference of two directions.
+    HALF_ROUNDINGS = 2.0, at least 2.0;
     /// Shininess above this is left to the CPU.
     MOST_SHININESS = (1_u64 << 20) as f64;
     /// Roundings of the distance of two unit vectors, for a unit of it.
-    APART_ROUNDINGS = 9.0;
+    APART_ROUNDINGS = 12.0, at least 11.5;
     /// Roundings of a power, for a unit of its logarithm to base 2.
-    LOG_ROUNDINGS = 12.0;
+    LOG_ROUNDINGS = 12.0, at least 11.1;
     /// The same, whatever its logarithm is; and those of the products that make a glint of it.
-    POWER_ROUNDINGS = 20.0;
+    POWER_ROUNDINGS = 20.0, at least 20.0;
+    /// Roundings of a sum of colours.
+    SUM_ROUNDINGS = 2.0, at least 2.0;
+    /// Roundings of the share of a colour that a ray brings.
+    SHARE_ROUNDINGS = 12.0, at least 6.5;
+    /// Half of what a ray may bring is within this share of both ends.
+    HALF_OPEN = 0.51, at least 0.5001;
+    /// How much a mirrored direction turns with the normal.
+    MIRROR_TURN = 4.04, at least 4.004;
+    /// How much a mirror whose normal is off stretches what a direction is off by.
+    MIRROR_STRETCH = 5.0, at least 4.004;
+    /// Roundings of the bound of a ray's line, at each mirror and pane.
+    LINE_ROUNDINGS = 4.0, at least 4.0;
+    /// Roundings that a mirror adds to a branch's weight.
+    WEIGHT_ROUNDINGS = 2.0, at least 1.5;
+    /// Roundings that a pane adds to it.
+    PANE_WEIGHT_ROUNDINGS = 5.0, at least 3.0;
+    /// Roundings of what is left of the longest path.
+    PATH_ROUNDINGS = 2.0, at least 1.5;
+    /// Roundings of a mirrored direction.
+    MIRROR_ROUNDINGS = 18.0, at least 11.0;
+    /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
+    BOUNCE_ROUNDINGS = 30.0, at least 29.3;
     /// Roundings of an index of tiles, blocks or texels.
-    INDEX_ROUNDINGS = 5.0;
+    INDEX_ROUNDINGS = 5.0, at least 4.5;
+    /// Indices of texels are certain up to this: there their remainder is.
+    MOST_INDEX = (1_u64 << 20) as f64;
+    /// The colour wheel's place is to be farther from its middle than the root of this many times its bound.
+    WHEEL_FAR = 1024.0;
+    /// How much the colours of `color_wheel` change with the place, in units of its distance.
+    WHEEL_SLOPE = 3.0, at least 2.96;
     /// Roundings of the colours of `color_wheel`.
-    WHEEL_ROUNDINGS = 20.0;
+    WHEEL_ROUNDINGS = 20.0, at least 18.5;
+    /// Roundings that widen the tree's boxes.
+    BOX_ROUNDINGS = 4.0, at least 1.0;
+    /// What a sample's error is multiplied by: the roundings of up to 2¹⁶ samples' bounds.
+    SAMPLE_GROWTH = 1.01, at least 1.008;
+    /// Roundings of a sum of samples.
+    SAMPLE_ROUNDINGS = 3.0, at least 2.5;
 }
 
-/// Added to every literal bound: what flushed subnormals may amount to.
-const FLOOR: f64 = 1.0 / (1_u128 << 100) as f64;
+/// The results of + − × are faithfully rounded: off by less than this, relatively.
+pub const ROUNDING: f64 = 1.0 / 8_388_608.0;
 
-/// No number that goes to the GPU may be larger: then no product of those that meet there overflows.
-pub const LARGEST: f64 = (1_u64 << 40) as f64;
-
-/// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
-const LINEAR_ROUNDINGS: [f64; 2] = [6.0, 8.0];
-/// The same for a quadratic form with six coefficients.
-const QUADRATIC_ROUNDINGS: [f64; 2] = [9.0, 18.0];
-/// What an offset that was rounded to f32 may be off by, in pixels.
-const OFFSET_ERROR: f64 = 1.0 / 33_554_432.0;
-
-/// Roundings of |W|, of W/|W| and of an ambient value, for a unit of κ.
-pub const LENGTH_ROUNDINGS: f64 = 20.0;
-/// See [`LENGTH_ROUNDINGS`].
-pub const DIR_ROUNDINGS: f64 = 12.0;
-/// See [`LENGTH_ROUNDINGS`].
-pub const VALUE_ROUNDINGS: f64 = 13.0;
+named! {
+    /// The constants of the bounds that the host computes.
+    LITERAL:
+    /// Added to every literal bound: what flushed subnormals may amount to.
+    FLOOR = 1.0 / (1_u128 << 100) as f64, at least 1.0 / (1_u128 << 104) as f64;
+    /// What a result that is flushed to 0, or a coefficient that f32 cannot hold, is off by at most.
+    LEAST_NORMAL = 1.0 / (1_u128 << 126) as f64;
+    /// No number that goes to the GPU may be larger: then no product of those that meet there overflows.
+    LARGEST = (1_u64 << 40) as f64;
+    /// No factor of a colour may be nearer to 0 than this, unless it is 0: then products of a few of them neither
+    /// vanish nor lose their relative accuracy below f32's normal numbers.
+    SMALLEST = 1.0 / LARGEST;
+    /// Products of a light's numbers, and those of a ray's weight with what a path's length makes of it, stay below 2
+    /// to the power of this.
+    MOST_PRODUCT = 32.0;
+    /// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
+    LINEAR_ROUNDINGS = 6.0, at least 5.5;
+    /// The same with several samples a pixel.
+    SAMPLED_LINEAR_ROUNDINGS = 8.0, at least 7.5;
+    /// The same for a quadratic form with six coefficients.
+    QUADRATIC_ROUNDINGS = 9.0, at least 8.5;
+    /// The same with several samples a pixel.
+    SAMPLED_QUADRATIC_ROUNDINGS = 18.0, at least 16.5;
+    /// What an offset that was rounded to f32 may be off by, in pixels.
+    OFFSET_ERROR = 1.0 / 33_554_432.0;
+    /// Roundings of W.
+    W_ROUNDINGS = 5.0, at least 3.75;
+    /// Roundings of |W| and of a primary hit's distance, for a unit of κ.
+    LENGTH_ROUNDINGS = 20.0, at least 17.5;
+    /// The same with several samples a pixel.
+    SAMPLED_LENGTH_ROUNDINGS = 23.0, at least 21.25;
+    /// Roundings of W/|W|, likewise.
+    DIR_ROUNDINGS = 12.0, at least 9.5;
+    /// The same with several samples a pixel.
+    SAMPLED_DIR_ROUNDINGS = 13.0, at least 12.0;
+    /// Roundings of an ambient value, likewise.
+    VALUE_ROUNDINGS = 13.0, at least 11.25;
+    /// κ may be no larger.
+    MOST_CONDITION = 64.0;
+    /// Roundings of the fraction that is added to an index.
+    FRACTION_ROUNDINGS = 6.0, at least 4.5;
+    /// Roundings of what is subtracted from a position for H − point.
+    FROM_POINT_ROUNDINGS = 4.0, at least 1.5;
+    /// Roundings of the coordinates on a rectangle.
+    SIDES_ROUNDINGS = 8.0, at least 2.5;
+    /// Beyond a sphere's box the discriminant is below minus this share of what it would be for a circle.
+    OUTLINE_SHARE = 0.1;
+    /// So many roundings of all its terms lie between it and 0 there.
+    OUTLINE_ROUNDINGS = 64.0, at least 45.0;
+    /// The bound of a form whose border runs midway between rays, in steps of their lattice.
+    STEP_ERROR = 1.0 / 8.0, at least 0.0;
+    /// So many steps such a form may have.
+    MOST_STEPS = (1_u64 << 22) as f64;
+    /// 255 times the value below which a byte is 0 whatever was rounded.
+    DARKNESS = 0.9;
+    /// What the brightest value that a ray may bring is multiplied by, for the roundings of its own.
+    BRIGHT_GROWTH = 1.001, at least 1.0001;
+}
 
 /// The pixels of the picture, and how rays pass through them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,8 +255,9 @@ impl Screen {
         })
     }
 
-    fn sampled(&self) -> usize {
-        usize::from(self.margin > 0.0)
+    /// What holds with a ray a pixel, or with several.
+    fn either(&self, one: f64, several: f64) -> f64 {
+        if self.margin > 0.0 { several } else { one }
     }
 
     /// What a coordinate's own rounding adds to the error of a form, for a unit of its coefficient.
@@ -152,12 +287,11 @@ pub type Form<const N: usize> = ([f32; N], f32);
 pub fn linear(form: [Bounded; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
     let most = [reach[0], reach[1], 1.0];
     let moved = [screen.offset_error(), screen.offset_error(), 0.0];
-    let mut error = FLOOR;
-    for i in 0..3 {
-        error += bound(form[i], most[i], LINEAR_ROUNDINGS[screen.sampled()])
-            + form[i].value.abs() * moved[i];
-    }
-    (form.map(|c| c.value as f32), round_up(error))
+    let roundings = screen.either(LINEAR_ROUNDINGS, SAMPLED_LINEAR_ROUNDINGS);
+    (
+        form.map(|c| c.value as f32),
+        bound(&form, &most, &moved, roundings),
+    )
 }
 
 /// A quadratic form over (X², XY, Y², X, Y, 1).
@@ -166,17 +300,22 @@ pub fn quadratic(form: [Bounded; 6], reach: [f64; 2], screen: &Screen) -> Form<6
     let most = [x * x, x * y, y * y, x, y, 1.0];
     let slope = screen.offset_error();
     let moved = [2.0 * x, x + y, 2.0 * y, 1.0, 1.0, 0.0].map(|m| m * slope);
-    let mut error = FLOOR;
-    for i in 0..6 {
-        error += bound(form[i], most[i], QUADRATIC_ROUNDINGS[screen.sampled()])
-            + form[i].value.abs() * moved[i];
-    }
-    (form.map(|c| c.value as f32), round_up(error))
+    let roundings = screen.either(QUADRATIC_ROUNDINGS, SAMPLED_QUADRATIC_ROUNDINGS);
+    (
+        form.map(|c| c.value as f32),
+        bound(&form, &most, &moved, roundings),
+    )
 }
 
-/// What one term adds to a form's error.
-fn bound(coefficient: Bounded, most: f64, roundings: f64) -> f64 {
-    most * (roundings * U * coefficient.value.abs() + coefficient.error) * (1.0 + 1e-6)
+/// The bound of a form whose terms are at most `most` for a unit of their coefficients, and `moved` more where the
+/// pixel is off. A rounding takes a share of the term, or all of what is flushed.
+fn bound(form: &[Bounded], most: &[f64], moved: &[f64], roundings: f64) -> f32 {
+    let terms = form.iter().zip(most).zip(moved);
+    let errors = terms.map(|((c, most), moved)| {
+        let size = c.value.abs();
+        most * (roundings * (ROUNDING * size + LEAST_NORMAL) + c.error) + size * moved
+    });
+    round_up((FLOOR + errors.sum::<f64>()) * GROWTH)
 }
 
 /// An upper bound of |value|, as an f64.
@@ -200,7 +339,7 @@ pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     } * screen.lattice;
     let reach = screen.reach(anchor);
     // The half step must have a bit in every sum.
-    let room = screen.lattice * 4_194_304.0;
+    let room = screen.lattice * MOST_STEPS;
     // A border outside the picture is as good anywhere outside.
     let border = border.clamp(-reach[axis] - 1.0, reach[axis] + 1.0);
     if reach[axis] + 2.0 > room {
@@ -210,12 +349,8 @@ pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     let mut form = [0.0; 3];
     form[axis] = sign as f32;
     form[2] = (-sign * border) as f32;
-    Some((form, (screen.lattice / 8.0) as f32))
+    Some((form, (screen.lattice * STEP_ERROR) as f32))
 }
-
-/// No factor of a colour may be nearer to 0 than this, unless it is 0: then products of a few of them neither vanish
-/// nor lose their relative accuracy below f32's normal numbers.
-pub const SMALLEST: f64 = 1.0 / LARGEST;
 
 /// Whether a factor is 0, or far enough from it.
 pub fn not_tiny(value: f32) -> bool {
@@ -226,3 +361,6 @@ pub fn not_tiny(value: f32) -> bool {
 pub fn fits(value: f32) -> bool {
     f64::from(value.abs()) <= LARGEST
 }
+
+#[cfg(test)]
+mod tests;

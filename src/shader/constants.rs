@@ -145,13 +145,22 @@ fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
     }
     let camera = &packed.camera;
     let for_spread = |roundings: f64| roundings * f64::from(camera.condition) * bounds::U;
-    let brightest = (0.9 / f64::from(packed.dark)).min(f64::from(f32::MAX));
-    let named = bounds::NAMED.iter().map(|(name, value)| line(name, *value));
+    let (length, dir) = if features.contains(&Feature::Samples) {
+        (
+            bounds::SAMPLED_LENGTH_ROUNDINGS,
+            bounds::SAMPLED_DIR_ROUNDINGS,
+        )
+    } else {
+        (bounds::LENGTH_ROUNDINGS, bounds::DIR_ROUNDINGS)
+    };
+    let brightest = (bounds::DARKNESS / f64::from(packed.dark)).min(f64::from(f32::MAX));
+    let named = bounds::NAMED.iter();
+    let named = named.map(|constant| line(constant.name, constant.value));
     let mut lines: Vec<String> = named.collect();
     lines.extend([
         line("W_ERROR", f64::from(camera.w_error)),
-        line("LENGTH_ERROR", for_spread(bounds::LENGTH_ROUNDINGS)),
-        line("DIR_ERROR", for_spread(bounds::DIR_ROUNDINGS)),
+        line("LENGTH_ERROR", for_spread(length)),
+        line("DIR_ERROR", for_spread(dir)),
         line("VALUE_ERROR", for_spread(bounds::VALUE_ROUNDINGS)),
         format!("const DARK = {};", literal(packed.dark)),
         line("BRIGHT", brightest),

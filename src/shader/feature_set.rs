@@ -284,7 +284,9 @@ impl<'a> Conditions<'a> {
             Feature::FirstOrder => certified && !lit && (tiled || textured || pplane || psphere),
             Feature::Certified => certified,
             Feature::Moving => any && set.moving,
-            Feature::Barrier => lit || pplane || psphere || (certified && set.spheres),
+            Feature::Barrier => {
+                lit || pplane || psphere || (certified && (set.spheres || tiled || textured))
+            }
             Feature::Groups => set.groups && certified,
             Feature::Tables => certified && set.tables,
             Feature::Index => certified && (tiled || textured || pplane),

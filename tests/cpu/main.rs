@@ -9,6 +9,7 @@ mod image_output;
 mod known_answers;
 mod listing;
 mod other_shaders;
+mod premises;
 mod scene_errors;
 mod scene_fuzz;
 mod shaders;

@@ -4,7 +4,7 @@ use super::{Packed, f32x3, factor, factors};
 use crate::prepare::extent::Extent;
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{LARGEST, MOST_SHININESS, U, round_up, upper_bound};
+use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, U, round_up, upper_bound};
 use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
@@ -197,7 +197,9 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         lights_on_surface: bits(&plane.lights_on_surface),
         bounded,
         highest,
-        sides_error: round_up(8.0 * U * (larger_bound(origin) + larger_bound(dimensions))),
+        sides_error: round_up(
+            SIDES_ROUNDINGS * U * (larger_bound(origin) + larger_bound(dimensions)),
+        ),
         low_light,
         height,
     }

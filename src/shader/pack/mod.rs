@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bounds::{Screen, U, round_up, upper_bound};
+use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, U, W_ROUNDINGS, round_up, upper_bound};
 use super::kind::SurfaceKind;
 use super::records::{
     BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere,
@@ -201,7 +201,7 @@ impl Packed {
         }
     }
 
-    /// 1/|P| below which the byte is 0 whatever is hit: 0.9/255 over the brightest ambient reflectivity there is.
+    /// 1/|P| below which the byte is 0 whatever is hit: `DARKNESS`/255 over the brightest ambient reflectivity there is.
     fn darkness(&self) -> f32 {
         let brightest = |color: &[f32; 3]| f64::from(color.iter().copied().fold(0.0, f32::max));
         let objects = self.objects.iter().map(|o| brightest(&o.ambient));
@@ -212,7 +212,8 @@ impl Packed {
             .iter()
             .map(|kind| kind.brightest(ambient))
             .fold(1e-30, f64::max);
-        (0.9 / (most * 1.001 * f64::from(self.camera.numbers.gain))).min(f64::from(f32::MAX)) as f32
+        (DARKNESS / (most * BRIGHT_GROWTH * f64::from(self.camera.numbers.gain)))
+            .min(f64::from(f32::MAX)) as f32
     }
 
     /// Packs what modulates an object's material, and notes it in the object.
@@ -367,7 +368,7 @@ fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
             pad: Default::default(),
         },
         w_error: round_up(
-            5.0 * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt() + moved,
+            W_ROUNDINGS * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt() + moved,
         ),
         condition: round_up(1.0 + more[0] + more[1] + moved / (d * U)),
     }

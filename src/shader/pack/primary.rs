@@ -4,7 +4,10 @@ use crate::prepare::camera::ANCHOR_LIMIT;
 use crate::prepare::plane::{Step, Strip};
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{Form, Screen, U, linear, quadratic, round_up, step, upper_bound};
+use crate::shader::bounds::{
+    FLOOR, Form, GROWTH, LEAST_NORMAL, OUTLINE_ROUNDINGS, OUTLINE_SHARE, Screen, U, linear,
+    quadratic, round_up, step, upper_bound,
+};
 use crate::shader::records::{Plane, Rectangle, Sphere, SphereHit};
 
 fn number(value: f64) -> Bounded {
@@ -189,18 +192,28 @@ fn ellipse(camera: &Camera<Bounded>, sphere: &prepare::Sphere<Bounded>) -> Optio
     let disc = small(camera, sphere, anchor, u);
     // The ellipse's box and a little more. With S = |a|X² + |c|Y² and μ = 1 − |b|/√(4ac) the form is at most
     // |f| + L√S − μS, which is below −δS from S = S₀ on; and all its terms together are below 3S there.
-    let [a, b, c, d, e, f] = disc.map(|c| c.value.abs());
+    let size = disc.map(|c| c.value.abs());
+    let [a, b, c, d, e, f] = size;
     let mu = 1.0 - b / (2.0 * (a * c).sqrt());
     let slope = (d * d / a + e * e / c).sqrt();
-    let delta = 0.1 * mu;
+    let delta = OUTLINE_SHARE * mu;
     let root = (slope + (slope * slope + 4.0 * (mu - delta) * f).sqrt()) / (2.0 * (mu - delta));
     // The reach is at least a pixel, since the bounds of coordinates between pixels assume that.
-    let reach = [root / a.sqrt(), root / c.sqrt()].map(|r| (r * (1.0 + 1e-9)).max(1.0));
+    let reach = [root / a.sqrt(), root / c.sqrt()].map(|r| (r * Bounded::GROW).max(1.0));
     let [x, y] = reach;
-    let terms = a * x * x + b * x * y + c * y * y + d * x + e * y + f;
+    let most = [x * x, x * y, y * y, x, y, 1.0];
+    let terms: f64 = most.iter().zip(&size).map(|(m, c)| m * c).sum();
+    // What the bound of the form has beside its roundings: errors of the coefficients, and what is flushed.
+    let rest: f64 = most
+        .iter()
+        .zip(&disc)
+        .map(|(m, c)| m * (c.error + OUTLINE_ROUNDINGS * LEAST_NORMAL))
+        .sum();
     let w = ray(camera, anchor);
     // Then no pixel outside the box is taken for one that may be hit (docs/NUMERICS.md).
-    (delta * root * root > 64.0 * U * terms && terms.is_finite()).then(|| Outline {
+    (delta * root * root > OUTLINE_ROUNDINGS * U * terms + GROWTH * (rest + FLOOR)
+        && terms.is_finite())
+    .then(|| Outline {
         anchor,
         disc,
         along: along(camera, sphere.toward, w),
@@ -263,7 +276,7 @@ pub(super) fn sphere_hit(
     let error = [x.1, y.1, z.1].map(f64::from);
     SphereHit {
         form_x: x.0,
-        form_error: round_up(error.iter().map(|e| e * e).sum::<f64>().sqrt() * (1.0 + 1e-9)),
+        form_error: round_up(error.iter().map(|e| e * e).sum::<f64>().sqrt() * Bounded::GROW),
         form_y: y.0,
         center_size: round_up(upper_bound(center.dot(center).sqrt())),
         form_z: z.0,

@@ -4,12 +4,8 @@
 
 use super::{Lit, Packed};
 use crate::shader::binding::BINDINGS;
-use crate::shader::bounds::{LARGEST, WEIGHT_MOST};
+use crate::shader::bounds::{LARGEST, MOST_CONDITION, MOST_PRODUCT, WEIGHT_MOST};
 use crate::shader::record::Record as _;
-
-/// Products of a light's numbers, and those of a ray's weight with what a path's length makes of it, stay below 2 to
-/// the power of this.
-const PRODUCTS: f64 = 32.0;
 
 /// Weights that are followed are below 2 to the power of this.
 const WEIGHT_GROWTH: f64 = WEIGHT_MOST - 127.0 + 1.0;
@@ -48,23 +44,23 @@ impl Lit {
 
 impl Packed {
     /// Lights nearer than the inverse of this are left to the CPU, so that diffuse ∘ emissivity / distance stays below
-    /// 2^PRODUCTS whatever is multiplied first.
+    /// 2^MOST_PRODUCT whatever is multiplied first.
     pub(crate) fn light_nearest(&self) -> f64 {
         let unit = f64::from(self.camera.numbers.unit);
         let [diffuse, _, emissivity] = self.lit.as_ref().map_or([0.0; 3], Lit::growth);
-        2.0_f64.powf(PRODUCTS - diffuse - emissivity - grows(unit))
+        2.0_f64.powf(MOST_PRODUCT - diffuse - emissivity - grows(unit))
     }
 
-    /// Paths shorter than this are left to the CPU, so that weight · gain / path stays below 2^PRODUCTS.
+    /// Paths shorter than this are left to the CPU, so that weight · gain / path stays below 2^MOST_PRODUCT.
     pub(crate) fn total_least(&self) -> f64 {
-        2.0_f64.powf(WEIGHT_GROWTH + grows(f64::from(self.camera.numbers.gain)) - PRODUCTS)
+        2.0_f64.powf(WEIGHT_GROWTH + grows(f64::from(self.camera.numbers.gain)) - MOST_PRODUCT)
     }
 
     /// Why no bound is to be relied on: a number so large that products of such numbers might overflow, or so small
     /// that they might vanish.
     pub(super) fn doubtful_numbers(&self) -> Option<&'static str> {
         let camera = &self.camera.numbers;
-        let far = f64::from(self.camera.condition) <= 64.0
+        let far = f64::from(self.camera.condition) <= MOST_CONDITION
             && camera.fits()
             && camera.step.iter().all(|s| f64::from(*s) < 1024.0)
             && f64::from(camera.gain) >= 1.0 / LARGEST
@@ -77,10 +73,10 @@ impl Packed {
                 return Some("a light after the first 32 lies on a surface");
             }
             let [diffuse, specular, emissivity] = lit.growth();
-            let moderate = specular + emissivity <= PRODUCTS
-                && diffuse + emissivity + grows(f64::from(camera.unit)) <= PRODUCTS
-                && WEIGHT_GROWTH + grows(f64::from(camera.gain)) <= PRODUCTS
-                && lit.ambient_growth(self) <= PRODUCTS;
+            let moderate = specular + emissivity <= MOST_PRODUCT
+                && diffuse + emissivity + grows(f64::from(camera.unit)) <= MOST_PRODUCT
+                && WEIGHT_GROWTH + grows(f64::from(camera.gain)) <= MOST_PRODUCT
+                && lit.ambient_growth(self) <= MOST_PRODUCT;
             if !moderate {
                 return Some(
                     "materials and lights are too bright together, or the scene is too small,",

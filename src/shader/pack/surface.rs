@@ -4,12 +4,14 @@ use super::{f32x3, factors};
 use crate::prepare::Prepared;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
 use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{U, round_up, upper_bound};
+use crate::shader::bounds::{
+    FRACTION_ROUNDINGS, FROM_POINT_ROUNDINGS, GROWTH, U, round_up, upper_bound,
+};
 use crate::shader::records::{ProceduralPlane, Texplane, TiledPlane};
 
 /// The bound of an index's error that does not come from the position: of the fraction added to it.
 fn index_error(fraction: Bounded) -> f32 {
-    round_up(6.0 * U * (1.0 + upper_bound(fraction)) + 2.0 * fraction.error)
+    round_up(FRACTION_ROUNDINGS * U * (1.0 + upper_bound(fraction)) + GROWTH * fraction.error)
 }
 
 fn length(row: V3<Bounded>) -> f32 {
@@ -61,7 +63,9 @@ pub(super) fn procedural_plane(pplane: &Pplane<Bounded>) -> ProceduralPlane {
             .into_iter()
             .fold(0.0, f32::max),
         fraction: pplane.index.map(|i| i.fraction.value as f32),
-        from_point_error: round_up(4.0 * U * offset + x.offset.error + y.offset.error),
+        from_point_error: round_up(
+            FROM_POINT_ROUNDINGS * U * offset + GROWTH * x.offset.error.max(y.offset.error),
+        ),
         parity: pplane.index.map(|i| i.parity as f32),
         pad: Default::default(),
         from_point: [

@@ -7,7 +7,7 @@ use crate::jitter::{Jitter, Sampling};
 use crate::real::Real;
 use crate::real::rational::ratio;
 use crate::scene::load_from;
-use crate::shader::bounds::DIR_ROUNDINGS;
+use crate::shader::bounds::{DIR_ROUNDINGS, MOST_PRODUCT};
 
 /// W and its direction as the shader has them from an offset in f32, against those from the course's place: pixels far
 /// apart, seen from next to the middle one, show what the offset's rounding is.
@@ -63,4 +63,24 @@ fn offsets_of_the_course_are_within_the_bounds_of_rays() {
     let rounded = (DIR_ROUNDINGS - 1.5) * U;
     let bound = DIR_ROUNDINGS * f64::from(condition) * U - rounded;
     assert!(worst_dir <= bound, "{worst_dir:e} > {bound:e}");
+}
+
+/// Materials and lights each of which is of ordinary size, and whose product is not.
+#[test]
+fn what_is_too_bright_together_is_left_to_the_cpu() {
+    let doubt = |reflectivity: f64, emissivity: f64, mirror: f64| {
+        let text = format!(
+            "camera c {{ pixeldim 3 3 worlddim 3 3 viewpoint 1.5 1.5 1 }}
+            material m {{ ambient 1 1 1 diffuse {reflectivity} 1 1 specular {mirror} 0 0 }}
+            plane p {{ material m normal 0 0 1 point 0 0 -3 }}
+            light l {{ location 0 0 1 emissivity 1 1 {emissivity} }}"
+        );
+        let scene = load_from("test", text.as_bytes(), Path::new(".")).unwrap();
+        Packed::new(&scene, &Settings::default()).unprovable
+    };
+    let (half, more) = ((MOST_PRODUCT / 2.0 - 4.0).exp2(), 8.0_f64.exp2());
+    assert_eq!(doubt(half, half, 0.0), None);
+    assert_eq!(doubt(1.0, half * more, half / more), None);
+    assert!(doubt(half * more, half * more, 0.0).is_some());
+    assert!(doubt(1.0, half * more, half * more).is_some());
 }

@@ -10,8 +10,10 @@
 mod branches;
 mod faults;
 mod lanes;
+mod lights;
 mod pictures;
 mod primary;
+mod roundings;
 mod support;
 mod surfaces;
 mod weights;
@@ -39,6 +41,8 @@ const TIGHT_LITERAL: f64 = 1.0 / 40.0;
 const TIGHT_OFF: f64 = 0.8;
 /// The same after several mirrors and panes, each of which may be off its own way.
 const TIGHT_BOUNCED: f64 = 0.5;
+/// Of a light the bounds of direction and distance add up, which its errors do not.
+const TIGHT_LIGHT: f64 = 0.5;
 
 #[test]
 fn rays_from_anywhere() {
@@ -160,15 +164,57 @@ fn weights_of_ordinary_size_are_followed() {
     weights::are_followed(&support::open(), &World::many().wgsl);
 }
 
-/// What need not be noticed: without it the other terms of its sum still cover the roundings of drivers that round to
-/// nearest, half as much as the model allows.
+/// Constants are no smaller than they have to be: at what they have to be at least, by their derivation, nothing is
+/// outside its bound.
+#[test]
+fn every_constant_by_itself() {
+    let gpu = support::open();
+    for (name, violations) in faults::of_the_least(&gpu) {
+        println!("{name:<34} {violations:>8}");
+        assert_eq!(violations, 0, "{name}: the derivation is wrong");
+    }
+}
+
+#[test]
+fn what_a_light_brings() {
+    let gpu = support::open();
+    let [exact, off] = lights::terms(&gpu, str::to_owned, MANY);
+    exact.judge(DECIDED, TIGHT);
+    off.judge(DECIDED, TIGHT_LIGHT);
+    for name in ["CLOSE", "U"] {
+        let without = lights::terms(
+            &gpu,
+            |wgsl| support::with_constant(wgsl, name, "0f"),
+            MANY / 4,
+        );
+        let violations = without.iter().map(BoundStatistics::violations);
+        assert!(violations.sum::<usize>() > 0, "{name} = 0 is not noticed");
+    }
+}
+
+/// Operands are exact here, and no other term can hide what a constant counts.
+#[test]
+fn roundings_one_by_one() {
+    let gpu = support::open();
+    let world = World::many();
+    for (name, least, most) in roundings::seen(&gpu, &world.wgsl, MANY) {
+        println!("{name:<34} at least {least:>5}, seen {most:>7.3}");
+        assert!(most <= least, "{name}: more roundings than are counted");
+        assert!(most >= least / 12.0, "{name}: counts too many");
+    }
+}
+
+/// What need not be noticed: without it the other terms of its sum, each at what it has to be at least, still cover the
+/// roundings that random operands make: several of the worst of them would have to come together. Of those that have a
+/// name `roundings_one_by_one` measures what they count by itself.
 const COVERED: &[&str] = &[
     "POSITION_ROUNDINGS",
     "DISC_ROUNDINGS",
     "ROOT_ROUNDINGS",
     "NORMAL_ROUNDINGS",
     "APART_ROUNDINGS",
-    "a pplane's index_error",
+    "DISTANCE_ROUNDINGS",
+    "HIT_ROUNDINGS",
     "a sphere's along_error",
     "a sphere's form_error",
 ];

@@ -75,7 +75,7 @@ pub(crate) fn tiles(gpu: &Gpu, world: &World, wgsl: &str, count: usize) -> [Boun
     assert_has(
         wgsl,
         &[
-            "let index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);",
+            "var index = vec2f(dot(plane.row_0, position) + plane.fraction_0, dot(plane.row_1, position) + plane.fraction_1);",
             "var margin = abs(index - round(index)) - (plane.row_lengths * index_error(point) + plane.errors);",
         ],
     );
@@ -151,7 +151,7 @@ pub(crate) fn blocks(
     assert_has(
         wgsl,
         &[
-            "let index = at.point.position * at.plane.per_unit + at.plane.fraction;",
+            "var index = at.point.position * at.plane.per_unit + at.plane.fraction;",
             "var margin = abs(index - round(index)) - (abs(at.plane.per_unit) * index_error(at.point) + at.plane.index_error);",
         ],
     );
