@@ -168,7 +168,7 @@ fn another_viewpoint_is_another_shader_only_where_the_camera_is_in_the_text() {
 #[test]
 fn what_is_not_used_is_not_there() {
     // (a word of the feature, who may have it)
-    let lit = |i| matches!(i, Mirror | Glass | Glint | LampInFloor);
+    let lit = |i| matches!(i, Mirror | Glass | Glint | LampInFloor | LampOverFloor);
     let words: &[(&str, &dyn Fn(Ingredient) -> bool)] = &[
         ("plane_hits(", &|i| {
             matches!(
@@ -182,6 +182,7 @@ fn what_is_not_used_is_not_there() {
                     | Coplanar
                     | Mirror
                     | LampInFloor
+                    | LampOverFloor
             )
         }),
         ("rectangle_hits", &|i| {
@@ -237,6 +238,7 @@ fn what_is_not_used_is_not_there() {
         ("mirror.ray.dir =", &|i| matches!(i, Mirror | Glint)),
         ("through.weight", &|i| i == Glass),
         ("power(", &|i| i == Glint),
+        ("point.height", &|i| i == LampOverFloor),
         ("partial", &|_| false),
         ("summed", &|_| false),
         ("jitter_hash", &|_| false),
