@@ -244,7 +244,7 @@ fn of_hard(gpu: &Gpu, name: &str, fault: Fault) -> Count {
 /// Scenes that were left to the CPU, wholly or for the most part, before their bounds were derived as they are; and how
 /// many pixels in a hundred may be in doubt.
 const MOSTLY_SURE: &[(&str, usize)] = &[
-    ("lit_glint_exponents", 3),
+    ("lit_glint_exponents", 8),
     ("lit_half_mirrors_wedge", 3),
     ("lit_lamp_over_floor", 2),
     ("viewpoint_far_aside", 2),
