@@ -3,8 +3,8 @@
 //! Where a pixel stands decides by itself about every second of them, so the same pixels are checked whatever the bands
 //! are (but for those of bands that would have none); they are spread evenly, and follow no column, row or workgroup.
 //! The others go on from such a place to where margins are smallest. A margin, be it to a byte's border, an edge or a
-//! tile's end, shrinks steadily along a row until something changes: it is the smallest beside a pixel that is in doubt,
-//! else where the colour changes. That costs nothing on the GPU.
+//! tile's end, shrinks steadily along a row until something changes: it is the smallest beside a pixel that is in
+//! doubt, else where the colour changes. That costs nothing on the GPU.
 
 use std::ops::Range;
 

@@ -29,6 +29,8 @@ pub struct WorldPlane<R> {
     pub extent: Extent<R>,
     /// Lights that lie in the plane exactly, ascending.
     pub lights_on_surface: Vec<usize>,
+    /// The light that is nearest to the plane, if that is too near to be told from its location, and its height.
+    pub low_light: Option<(usize, R)>,
 }
 
 impl<R: Real> WorldPlane<R> {
@@ -64,6 +66,11 @@ impl<R: Real> WorldPlane<R> {
             fixed_coordinate: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
             extent,
             lights_on_surface: lights_on_plane(scene, normal, point),
+            low_light: low_light(scene, normal, point).map(|light| {
+                let location = ratio3(scene.lights[light].location);
+                let height = dot(&n, &sub(&location, &ratio3(point)));
+                (light, R::ratio(&(height / &largest / &unit)) / length)
+            }),
         }
     }
 }
@@ -81,6 +88,25 @@ fn lights_on_plane(scene: &Scene, normal: DVec3, point: DVec3) -> Vec<usize> {
     (0..scene.lights.len())
         .filter(|&i| on(&scene.lights[i]))
         .collect()
+}
+
+/// Lights nearer to a plane than this share of their distance from the viewpoint lose too many bits in f32.
+const LOW: f64 = 1.0 / 32.0;
+
+/// The light that is nearest to the plane without lying in it, if it is nearer than `LOW`; of those that the GPU has
+/// bits for.
+fn low_light(scene: &Scene, normal: DVec3, point: DVec3) -> Option<usize> {
+    let lights = scene.lights.iter().map(|light| light.location);
+    let heights = lights.map(|light| {
+        let height = normal.dot(light - point).abs();
+        let distance = (light - scene.camera.viewpoint).length();
+        (height, height < LOW * normal.length() * distance)
+    });
+    (0..32)
+        .zip(heights)
+        .filter(|(_, (height, low))| *low && height.is_normal())
+        .min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))
+        .map(|(light, _)| light)
 }
 
 /// The rows of I − 2·N·Nᵀ/(N·N).

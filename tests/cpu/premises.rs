@@ -1,5 +1,5 @@
-//! docs/NUMERICS.md lists every premise and every constant of the error bounds; here is what keeps the list in step with
-//! the code.
+//! docs/NUMERICS.md lists every premise and every constant of the error bounds; here is what keeps the list in step
+//! with the code.
 
 use std::collections::BTreeSet;
 use std::fs;

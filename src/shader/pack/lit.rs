@@ -142,24 +142,13 @@ fn bits(lights_on_surface: &[usize]) -> u32 {
         .sum()
 }
 
-/// Lights nearer to a plane than this share of what its offset and theirs are lose too many bits in f32.
-const LOW: f64 = 1.0 / 32.0;
-
-/// The bit and height of the light that is nearest to the plane, if it is too near for f32 to tell, and f64 can.
-fn low_light(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> Option<(u32, f32)> {
-    let heights = (0..32).zip(&world.lights).filter_map(|(number, light)| {
-        let at = light.location.dot(plane.normal);
-        let height = at - plane.offset;
-        let size = at.value.abs()
-            + plane.offset.value.abs()
-            + upper_bound(light.location.dot(light.location)).sqrt();
-        let low = height.value.abs() < LOW * size;
-        // The rounding to f32 is u/2.
-        let known = height.error < 0.25 * U * height.value.abs();
-        (low && known && height.value.abs() > 1.0 / LARGEST)
-            .then_some((1 << number, height.value as f32))
-    });
-    heights.min_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()))
+/// The bit of the light that is next to the plane, and its height, if f32 can have it.
+fn low_light(plane: &prepare::WorldPlane<Bounded>) -> Option<(u32, f32)> {
+    let (light, height) = plane.low_light?;
+    let size = height.value.abs();
+    // The rounding to f32 is u/2; a light in the plane has no height to be known.
+    let known = size > 1.0 / LARGEST && height.error < 0.25 * U * size;
+    known.then_some((1 << light, height.value as f32))
 }
 
 fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> WorldPlane {
@@ -180,7 +169,7 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         Extent::Unbounded => (0, [zero; 2], [none; 2], [none; 2]),
         Extent::Rectangle(r) => (1, r.rows, r.origin, r.dimensions),
     };
-    let (low_light, height) = low_light(world, plane).unwrap_or((0, 0.0));
+    let (low_light, height) = low_light(plane).unwrap_or((0, 0.0));
     let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),

@@ -201,7 +201,8 @@ impl Packed {
         }
     }
 
-    /// 1/|P| below which the byte is 0 whatever is hit: `DARKNESS`/255 over the brightest ambient reflectivity there is.
+    /// 1/|P| below which the byte is 0 whatever is hit: `DARKNESS`/255 over the brightest ambient reflectivity there
+    /// is.
     fn darkness(&self) -> f32 {
         let brightest = |color: &[f32; 3]| f64::from(color.iter().copied().fold(0.0, f32::max));
         let objects = self.objects.iter().map(|o| brightest(&o.ambient));

@@ -246,6 +246,7 @@ fn what_is_not_used_is_not_there() {
         ("mirror.ray.dir =", &|i| matches!(i, Mirror | Glint)),
         ("through.weight", &|i| i == Glass),
         ("power(", &|i| i == Glint),
+        ("point.height", &|i| i == LampOverFloor),
         ("partial", &|_| false),
         ("summed", &|_| false),
         ("jitter_hash", &|_| false),
