@@ -17,6 +17,10 @@ const BEYOND_F32: &[(&str, f64)] = &[
     // Tile edges run through rows of pixels: exact ties, moved by the 10⁻¹⁷ that 0.001 and 10¹⁶ differ from their
     // doubles.
     ("light_years", 1.0),
+    // Shares of a light that are below what f32 can hold.
+    ("lit_faint_panes", 3.0),
+    // The height of a lamp 10⁻⁶ above a floor, as a difference of positions.
+    ("lit_lamp_over_floor", 0.6),
     ("millimetres", 1.0),
     // A screen 10⁻⁶ high before a grazing plane: rows whose values miss a byte's border by 10⁻⁷.
     ("plane_grazing_extreme", 1.5),
