@@ -25,14 +25,36 @@ BEGIN = "<!-- measured: written by scripts/bench.py, from here -->"
 END = "<!-- measured: to here -->"
 
 GALLERY = [
-    "notes/walls", "notes/tiles", "notes/procedural", "gallery/spheres_over_tiles", "gallery/ring", "gallery/molecule",
-    "gallery/planet", "gallery/tiles_floor", "gallery/pplane_slanted", "gallery/procedural_all", "lit/shadows_balls",
-    "lit/mirror_balls", "lit/glass_balls", "lit/stained_glass", "lit/spotlight_stage", "lit/texture_stretched",
+    "notes/walls",
+    "notes/tiles",
+    "notes/procedural",
+    "gallery/spheres_over_tiles",
+    "gallery/ring",
+    "gallery/molecule",
+    "gallery/planet",
+    "gallery/tiles_floor",
+    "gallery/pplane_slanted",
+    "gallery/procedural_all",
+    "lit/shadows_balls",
+    "lit/mirror_balls",
+    "lit/glass_balls",
+    "lit/stained_glass",
+    "lit/spotlight_stage",
+    "lit/texture_stretched",
 ]
 HARD = [
-    "hard/sphere_tiny_far", "hard/sphere_one_pixel", "hard/limb_million", "hard/sphere_huge_far", "hard/light_years",
-    "hard/millimetres", "hard/tiles_far", "hard/tiles_far_unresolved", "hard/plane_grazing_extreme",
-    "hard/coincident_slanted", "hard/spheres_nearly_equal", "hard/lit_shadow_tangent",
+    "hard/sphere_tiny_far",
+    "hard/sphere_one_pixel",
+    "hard/limb_million",
+    "hard/sphere_huge_far",
+    "hard/light_years",
+    "hard/millimetres",
+    "hard/tiles_far",
+    "hard/tiles_far_unresolved",
+    "hard/plane_grazing_extreme",
+    "hard/coincident_slanted",
+    "hard/spheres_nearly_equal",
+    "hard/lit_shadow_tangent",
 ]
 GALLERY_PLOT = ["notes/walls", "gallery/spheres_over_tiles", "gallery/molecule", "lit/mirror_balls"]
 HARD_PLOT = ["hard/sphere_tiny_far", "hard/light_years", "hard/tiles_far", "hard/lit_shadow_tangent"]
@@ -76,8 +98,9 @@ def of_ours(names):
 def spheres(n):
     """The landscape of n beads."""
     path = RAW / f"spheres_{n}.txt"
-    made = subprocess.run([sys.executable, str(ROOT / "scripts" / "make_spheres.py"), "--n", str(n)],
-                          stdout=subprocess.PIPE, check=True)
+    made = subprocess.run(
+        [sys.executable, str(ROOT / "scripts" / "make_spheres.py"), "--n", str(n)], stdout=subprocess.PIPE, check=True
+    )
     path.write_bytes(made.stdout)
     return path
 
@@ -163,12 +186,37 @@ def stem(scene):
 
 
 def times_table(scenes):
-    titles = ["scene", "size", "rays a pixel", "certified, kernel", "frame", "fast, kernel", "frame", "CPU certified", "CPU plain", "b²−4ac", "naive"]
+    titles = [
+        "scene",
+        "size",
+        "rays a pixel",
+        "certified, kernel",
+        "frame",
+        "fast, kernel",
+        "frame",
+        "CPU certified",
+        "CPU plain",
+        "b²−4ac",
+        "naive",
+    ]
     rows = []
     for s in scenes:
-        rows.append([stem(s), f"{s['width']}×{s['height']}", short(s["rays"]["all"])] + [short(v) for v in (
-            ms(s, "gpu_certified"), ms(s, "gpu_certified", "frame"), ms(s, "gpu_fast"), ms(s, "gpu_fast", "frame"),
-            ms(s, "cpu_certified"), ms(s, "cpu_plain"), ms(s, "f32_quadratic"), ms(s, "f32_naive"))])
+        rows.append(
+            [stem(s), f"{s['width']}×{s['height']}", short(s["rays"]["all"])]
+            + [
+                short(v)
+                for v in (
+                    ms(s, "gpu_certified"),
+                    ms(s, "gpu_certified", "frame"),
+                    ms(s, "gpu_fast"),
+                    ms(s, "gpu_fast", "frame"),
+                    ms(s, "cpu_certified"),
+                    ms(s, "cpu_plain"),
+                    ms(s, "f32_quadratic"),
+                    ms(s, "f32_naive"),
+                )
+            ]
+        )
     return table(titles, rows)
 
 
@@ -184,10 +232,25 @@ def errors_table(scenes):
         found = way(s, name)["t"]
         return "–" if found is None else " / ".join(short(found[k]) for k in ("median", "percentile_99", "worst"))
 
-    titles = ["scene", "doubtful %", "wrong %: certified", "fast", "b²−4ac", "naive", "t in ulp: certified", "fast", "b²−4ac", "naive"]
+    titles = [
+        "scene",
+        "doubtful %",
+        "wrong %: certified",
+        "fast",
+        "b²−4ac",
+        "naive",
+        "t in ulp: certified",
+        "fast",
+        "b²−4ac",
+        "naive",
+    ]
     names = ("gpu_certified", "gpu_fast", "f32_quadratic", "f32_naive")
-    rows = [[stem(s), short(way(s, "gpu_certified")["doubtful_percent"])]
-            + [wrong(s, n) for n in names] + [t(s, n) for n in names] for s in scenes]
+    rows = [
+        [stem(s), short(way(s, "gpu_certified")["doubtful_percent"])]
+        + [wrong(s, n) for n in names]
+        + [t(s, n) for n in names]
+        for s in scenes
+    ]
     return table(titles, rows)
 
 
@@ -196,27 +259,56 @@ def processes_table(scene):
     rows = []
     for name in ("gpu_certified", "gpu_fast", "cpu_certified"):
         seconds = way(scene, name)["seconds"]
-        spread = lambda t: "–" if t is None else f"{short(1e3 * t['median'])} ({short(1e3 * t['min'])}–{short(1e3 * t['max'])})"
+        spread = lambda t: (
+            "–" if t is None else f"{short(1e3 * t['median'])} ({short(1e3 * t['min'])}–{short(1e3 * t['max'])})"
+        )
         rows.append([way(scene, name)["name"], spread(at(seconds, "cold")), spread(at(seconds, "warm"))])
     return table(["process, ms", "cold", "warm"], rows)
 
 
 def growth_table(what, values, scenes):
-    titles = [what, "rays a pixel", "certified, Mpixel/s", "fast", "CPU certified", "CPU plain", "b²−4ac", "naive", "certified, frame ms", "process, warm, ms"]
+    titles = [
+        what,
+        "rays a pixel",
+        "certified, Mpixel/s",
+        "fast",
+        "CPU certified",
+        "CPU plain",
+        "b²−4ac",
+        "naive",
+        "certified, frame ms",
+        "process, warm, ms",
+    ]
     rows = []
     for value, s in zip(values, scenes):
         speeds = [way(s, n)["mpixels_per_second"] for n in WAYS]
-        rows.append([value, short(s["rays"]["all"])] + [short(v) for v in speeds + [ms(s, "gpu_certified", "frame"), ms(s, "gpu_certified", "warm")]])
+        rows.append(
+            [value, short(s["rays"]["all"])]
+            + [short(v) for v in speeds + [ms(s, "gpu_certified", "frame"), ms(s, "gpu_certified", "warm")]]
+        )
     return table(titles, rows)
 
 
-WAYS = {"gpu_certified": "GPU certified", "gpu_fast": "GPU fast", "cpu_certified": "CPU certified",
-        "cpu_plain": "CPU plain f64", "f32_quadratic": "f32 b²−4ac", "f32_naive": "f32 naive"}
+WAYS = {
+    "gpu_certified": "GPU certified",
+    "gpu_fast": "GPU fast",
+    "cpu_certified": "CPU certified",
+    "cpu_plain": "CPU plain f64",
+    "f32_quadratic": "f32 b²−4ac",
+    "f32_naive": "f32 naive",
+}
 
 
 # --- growth, drawn -----------------------------------------------------------------------------------------------------
 
-DASHES = {"gpu_certified": "", "gpu_fast": "", "cpu_certified": "6 3", "cpu_plain": "6 3", "f32_quadratic": "2 3", "f32_naive": "2 3"}
+DASHES = {
+    "gpu_certified": "",
+    "gpu_fast": "",
+    "cpu_certified": "6 3",
+    "cpu_plain": "6 3",
+    "f32_quadratic": "2 3",
+    "f32_naive": "2 3",
+}
 
 
 def marker(name, x, y):
@@ -270,10 +362,13 @@ def growth_plot(path, title, across, values, scenes, bench):
     def y(speed):
         return height - bottom - (math.log10(speed) - y_from) / (y_to - y_from) * (height - top - bottom)
 
-    out = [f"<?xml version='1.0' encoding='UTF-8'?>\n<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' "
-           f"viewBox='0 0 {width} {height}' font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='11'>",
-           f"<title>{escape(title)}</title>", "<rect width='100%' height='100%' fill='white'/>",
-           f"<text x='14' y='22' font-size='14' font-weight='bold'>{escape(title)}</text>"]
+    out = [
+        f"<?xml version='1.0' encoding='UTF-8'?>\n<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' "
+        f"viewBox='0 0 {width} {height}' font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='11'>",
+        f"<title>{escape(title)}</title>",
+        "<rect width='100%' height='100%' fill='white'/>",
+        f"<text x='14' y='22' font-size='14' font-weight='bold'>{escape(title)}</text>",
+    ]
     machine = bench.machine
     gpu = f"GPU: {machine['adapter']}, {machine['driver']}" if machine["adapter"] else "no GPU"
     out.append(f"<text x='14' y='37'>{escape(gpu)}</text>")
@@ -291,10 +386,16 @@ def growth_plot(path, title, across, values, scenes, bench):
         out.append(f"<path d='M{x(v):.1f},{top} V{height - bottom}' stroke='#ddd' stroke-width='0.6'/>")
         text = f"{v:,}" if v >= 1000 else v
         out.append(f"<text x='{x(v):.1f}' y='{height - bottom + 15}' text-anchor='middle'>{text}</text>")
-    out.append(f"<rect x='{left}' y='{top}' width='{width - left - right}' height='{height - top - bottom}' fill='none' stroke='black' stroke-width='0.8'/>")
+    out.append(
+        f"<rect x='{left}' y='{top}' width='{width - left - right}' height='{height - top - bottom}' fill='none' stroke='black' stroke-width='0.8'/>"
+    )
     middle = (top + height - bottom) / 2
-    out.append(f"<text x='{(left + width - right) / 2:.1f}' y='{height - 16}' text-anchor='middle'>{escape(across)}</text>")
-    out.append(f"<text x='18' y='{middle}' text-anchor='middle' transform='rotate(-90 18 {middle})'>Mpixel/s of kernel time (log)</text>")
+    out.append(
+        f"<text x='{(left + width - right) / 2:.1f}' y='{height - 16}' text-anchor='middle'>{escape(across)}</text>"
+    )
+    out.append(
+        f"<text x='18' y='{middle}' text-anchor='middle' transform='rotate(-90 18 {middle})'>Mpixel/s of kernel time (log)</text>"
+    )
     names = list(lines)
     ends = apart([y(lines[n][-1][1]) for n in names], 14, top + 6, height - bottom - 4)
     for i, name in enumerate(names):
@@ -332,14 +433,30 @@ def measured(bench, quick):
         f"## Measured\n\n`python3 scripts/bench.py{' --quick' if quick else ''}`, {bench.software}. GPU: {gpu}; kernels by {clock}. "
         f"CPU: {machine['cpu']}, {machine['threads']} threads, {machine['system']}."
         + (f" Load before it began: {load:.1f}." if load is not None else "")
-        + ("\n\n**A quick run on a busy machine: these figures show the form of the page, and nothing else.**" if quick else "")
+        + (
+            "\n\n**A quick run on a busy machine: these figures show the form of the page, and nothing else.**"
+            if quick
+            else ""
+        )
         + "\n\nTimes are in ms, medians of three runs. Wrong pixels are in percent, in brackets the worst channel; t, the distance along "
-        "primary rays, is in units in the last place of f32: median / 99 % / worst, where the right object is seen.\n")
-    parts.append("### Gallery\n\n" + times_table(gallery) + "\n" + errors_table(gallery) + "\n![Error against time, gallery](bench/gallery.svg)\n\n"
-                 f"`plumb render` as a process of its own, {stem(gallery[0])}, {gallery[0]['width']}×{gallery[0]['height']}, to a PPM on disk; cold: all caches of "
-                 "shaders and devices empty, warm: once more:\n\n" + processes_table(gallery[0]))
-    parts.append(f"### Hard cases, {hard[0]['width']}×{hard[0]['height']}\n\n" + errors_table(hard) + "\n" + times_table(hard)
-                 + "\n![Error against time, hard cases](bench/hard.svg)\n")
+        "primary rays, is in units in the last place of f32: median / 99 % / worst, where the right object is seen.\n"
+    )
+    parts.append(
+        "### Gallery\n\n"
+        + times_table(gallery)
+        + "\n"
+        + errors_table(gallery)
+        + "\n![Error against time, gallery](bench/gallery.svg)\n\n"
+        f"`plumb render` as a process of its own, {stem(gallery[0])}, {gallery[0]['width']}×{gallery[0]['height']}, to a PPM on disk; cold: all caches of "
+        "shaders and devices empty, warm: once more:\n\n" + processes_table(gallery[0])
+    )
+    parts.append(
+        f"### Hard cases, {hard[0]['width']}×{hard[0]['height']}\n\n"
+        + errors_table(hard)
+        + "\n"
+        + times_table(hard)
+        + "\n![Error against time, hard cases](bench/hard.svg)\n"
+    )
 
     def growth(key, heading, across, values, labels, scenes):
         growth_plot(bench.plots / f"{key}.svg", heading, across, values, scenes, bench)
@@ -348,7 +465,14 @@ def measured(bench, quick):
     base = (80, 45) if quick else (320, 180)
     sizes = [(base[0] * 2**i, base[1] * 2**i) for i in range(5)]
     scenes = [bench.run(f"pixels_{w}", of_ours(["gallery/spheres_over_tiles"]), (w, h))[0] for w, h in sizes]
-    growth("pixels", "Pixels, four times as many four times", "pixels of spheres_over_tiles", [w * h for w, h in sizes], [f"{w}×{h}" for w, h in sizes], scenes)
+    growth(
+        "pixels",
+        "Pixels, four times as many four times",
+        "pixels of spheres_over_tiles",
+        [w * h for w, h in sizes],
+        [f"{w}×{h}" for w, h in sizes],
+        scenes,
+    )
 
     counts = [10, 100, 1000] if quick else [10, 100, 1000, 10_000, 100_000, 1_000_000]
     size = (80, 45) if quick else (640, 360)
@@ -358,18 +482,34 @@ def measured(bench, quick):
     counts = [1, 4] if quick else [1, 2, 4, 8, 16, 32, 64]
     size = (80, 45) if quick else (320, 180)
     scenes = bench.run("lights", [lit_room(f"lights_{n}", 5, 0, n) for n in counts], size)
-    growth("lights", f"Lights, {size[0]}×{size[1]}, five balls on a floor", "lights", counts, [str(n) for n in counts], scenes)
+    growth(
+        "lights",
+        f"Lights, {size[0]}×{size[1]}, five balls on a floor",
+        "lights",
+        counts,
+        [str(n) for n in counts],
+        scenes,
+    )
 
     counts = [0, 4] if quick else [0, 1, 2, 5, 10, 15, 20]
     scenes = bench.run("mirrors", [lit_room(f"mirrors_{n}", 20, n, 2) for n in counts], size)
-    growth("mirrors", f"Mirrors, {size[0]}×{size[1]}, of twenty balls under two lights", "mirrors", counts, [str(n) for n in counts], scenes)
+    growth(
+        "mirrors",
+        f"Mirrors, {size[0]}×{size[1]}, of twenty balls under two lights",
+        "mirrors",
+        counts,
+        [str(n) for n in counts],
+        scenes,
+    )
     return "\n".join(parts)
 
 
 def main():
     arguments = argparse.ArgumentParser(description="Makes the measured part of docs/BENCH.md.")
     arguments.add_argument("--quick", action="store_true", help="few scenes, small, once: to see that it works")
-    arguments.add_argument("--docs", type=pathlib.Path, default=ROOT / "docs", metavar="FOLDER", help="where BENCH.md and bench/ go (docs)")
+    arguments.add_argument(
+        "--docs", type=pathlib.Path, default=ROOT / "docs", metavar="FOLDER", help="where BENCH.md and bench/ go (docs)"
+    )
     given = arguments.parse_args()
     if not PLUMB.exists():
         sys.exit(f"bench.py: no {PLUMB}: cargo build --release")

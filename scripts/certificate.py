@@ -50,7 +50,9 @@ def main():
     size = arguments.size
     scenes = arguments.scene or sorted(p for p in ROOT.glob("scenes/**/*.txt") if p.parent.name != "errors")
     ratios = []
-    print("| scene | doubtful % | of these ties % | f64 | many bits | tie | presumed | as on the CPU | kernel × | frame × |")
+    print(
+        "| scene | doubtful % | of these ties % | f64 | many bits | tie | presumed | as on the CPU | kernel × | frame × |"
+    )
     print("|---|---|---|---|---|---|---|---|---|---|")
     total = {"pixels": 0, "doubtful": 0, "tie": 0, "presumed": 0, "scenes": 0, "differ": 0}
     for scene in scenes:

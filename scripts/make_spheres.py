@@ -31,6 +31,7 @@ The order of the rnd calls is as written: radius, x, z, lift (one or two calls),
 
 The camera looks along -z from (8, 7.5, 12) through a screen 16 wide and 160000 * height / width high.
 """
+
 import argparse
 import sys
 
@@ -84,14 +85,20 @@ def main():
         sys.exit("make_spheres.py: --n, --width and --height must be at least 1")
 
     out = sys.stdout.write
-    out(f"# A landscape of {a.n} beads, made by scripts/make_spheres.py --n {a.n} --width {a.width} "
-        f"--height {a.height} --seed {a.seed}\n")
-    out(f"camera cam1\n{{\n  pixeldim {a.width} {a.height}\n"
-        f"  worlddim 16.0000 {decimal(max(1, 160000 * a.height // a.width))}\n  viewpoint 8.0000 7.5000 12.0000\n}}\n")
+    out(
+        f"# A landscape of {a.n} beads, made by scripts/make_spheres.py --n {a.n} --width {a.width} "
+        f"--height {a.height} --seed {a.seed}\n"
+    )
+    out(
+        f"camera cam1\n{{\n  pixeldim {a.width} {a.height}\n"
+        f"  worlddim 16.0000 {decimal(max(1, 160000 * a.height // a.width))}\n  viewpoint 8.0000 7.5000 12.0000\n}}\n"
+    )
     for name, ambient in MATERIALS:
         out(f"material {name}\n{{\n  ambient {ambient}\n}}\n")
-    out("tiled_plane floor\n{\n  material ground_a\n  normal 0 1 0\n  point 0 -3 0\n"
-        "  dimension 2 2\n  altmaterial ground_b\n}\n")
+    out(
+        "tiled_plane floor\n{\n  material ground_a\n  normal 0 1 0\n  point 0 -3 0\n"
+        "  dimension 2 2\n  altmaterial ground_b\n}\n"
+    )
     out("plane sky\n{\n  material dusk\n  normal 0 0 1\n  point 0 0 -80\n}\n")
 
     random = Lcg(a.seed)
@@ -111,8 +118,10 @@ def main():
         y = -30000 + height + radius + lift
         shade = height + random.rnd(6000)
         material = 5 if lift else sum(shade >= limit for limit in (14000, 20000, 30000, 41000))
-        out(f"sphere s{i}\n{{\n  material {MATERIALS[material][0]}\n"
-            f"  center {decimal(x)} {decimal(y)} {decimal(z)}\n  radius {decimal(radius)}\n}}\n")
+        out(
+            f"sphere s{i}\n{{\n  material {MATERIALS[material][0]}\n"
+            f"  center {decimal(x)} {decimal(y)} {decimal(z)}\n  radius {decimal(radius)}\n}}\n"
+        )
 
 
 if __name__ == "__main__":

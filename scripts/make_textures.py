@@ -76,10 +76,32 @@ def rug(x, y):
     """64 x 40: nested borders around a row of lozenges."""
     edge = min(x, y, 63 - x, 39 - y)
     if edge < 8:
-        return [(196, 164, 92), (196, 164, 92), (122, 22, 34), (122, 22, 34), (28, 44, 88), (28, 44, 88), (208, 186, 130), (122, 22, 34)][edge]
+        return [
+            (196, 164, 92),
+            (196, 164, 92),
+            (122, 22, 34),
+            (122, 22, 34),
+            (28, 44, 88),
+            (28, 44, 88),
+            (208, 186, 130),
+            (122, 22, 34),
+        ][edge]
     # Lozenges 16 wide around the middle row, ring in ring.
     ring = abs((x - 8) % 16 - 8) * 3 // 2 + abs(y * 2 - 39) // 2
-    color = [(226, 198, 120), (226, 198, 120), (28, 60, 108), (28, 60, 108), (206, 84, 60), (206, 84, 60), (206, 84, 60), (216, 190, 132)][min(ring // 2, 7)] if ring < 14 else (150, 30, 40)
+    color = (
+        [
+            (226, 198, 120),
+            (226, 198, 120),
+            (28, 60, 108),
+            (28, 60, 108),
+            (206, 84, 60),
+            (206, 84, 60),
+            (206, 84, 60),
+            (216, 190, 132),
+        ][min(ring // 2, 7)]
+        if ring < 14
+        else (150, 30, 40)
+    )
     return darker(color, noise(x, y, 8) // 14)
 
 
@@ -125,7 +147,15 @@ def texels(x, y):
     return (top, bottom)[y][x]
 
 
-TEXTURES = [(bricks, 32, 32), (wood, 48, 32), (painting, 72, 54), (rug, 64, 40), (night, 64, 48), (window, 48, 48), (texels, 4, 2)]
+TEXTURES = [
+    (bricks, 32, 32),
+    (wood, 48, 32),
+    (painting, 72, 54),
+    (rug, 64, 40),
+    (night, 64, 48),
+    (window, 48, 48),
+    (texels, 4, 2),
+]
 
 
 def main():

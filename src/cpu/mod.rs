@@ -16,6 +16,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod debug;
+pub mod fault;
 pub mod hit_point;
 pub mod light;
 pub mod observer;

@@ -9,6 +9,7 @@ use super::tree::Tree;
 use crate::prepare::{Prepared, Surface};
 use crate::real::{Bounded, Real, Undecided, V3};
 
+pub use super::fault::Fault;
 pub use super::observer::{Branch, RayKind, TraceObserver, Unmet, Unobserved};
 pub use crate::settings::Limits;
 
@@ -21,21 +22,6 @@ pub struct Hit<R> {
     pub object: usize,
     /// Index of the prepared plane or sphere.
     pub index: usize,
-}
-
-/// Why a ray's colour is not known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fault {
-    /// The number type is too coarse.
-    Undecided,
-    /// The sample needs more rays than allowed.
-    TooManyRays,
-}
-
-impl From<Undecided> for Fault {
-    fn from(_: Undecided) -> Self {
-        Self::Undecided
-    }
 }
 
 /// The closest object that a primary ray hits; of equally near ones the first in the file.

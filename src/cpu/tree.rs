@@ -1,18 +1,18 @@
-//! Twin of the loop in `shaders/trace.wgsl`: the rays that a sample grows where it meets mirrors and what light goes
-//! through.
+//! The rays that a sample grows where it meets mirrors and what light goes through. Referee of `shaders/branch.wgsl`.
 //!
 //! A ray whose whole subtree cannot count is not followed: what it may bring at most is known from the scene
 //! (`prepare::brightest`) and added to what is left open. Rays on the same way are followed as one.
 
+use super::fault::Fault;
 use super::light::{Lit, light_term, normal_at};
 use super::observer::{Branch, RayKind, TraceObserver, Unmet};
 use super::surface::{Point, getamb, tile_material};
-use super::trace::{Fault, Limits};
 use super::waiting::Waiting;
 use super::world::{Range, closest_hit};
 use crate::prepare::{Prepared, World};
 use crate::real::rational::two_to;
 use crate::real::{Bounded, Real, V3};
+use crate::settings::Limits;
 
 /// A ray of which it cannot be told what it meets stays open if all that it may bring is at most this: a sixteenth of a
 /// byte.
