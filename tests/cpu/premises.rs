@@ -17,6 +17,7 @@ const SOURCES: &[&str] = &[
     "src/certify/lanes/shade.rs",
     "src/shader/pack/lit.rs",
     "src/shader/pack/mod.rs",
+    "src/prepare/world_plane.rs",
     "src/shader/pack/primary.rs",
     "src/shader/pack/surface.rs",
     "shaders/branch.wgsl",
