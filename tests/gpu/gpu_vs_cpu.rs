@@ -18,7 +18,7 @@ const BEYOND_F32: &[(&str, f64)] = &[
     // doubles.
     ("light_years", 1.0),
     // Shares of a light that are below what f32 can hold.
-    ("lit_faint_panes", 3.0),
+    ("lit_faint_panes", 0.3),
     // The height of a lamp 10⁻⁶ above a floor, as a difference of positions.
     ("lit_lamp_over_floor", 0.6),
     ("millimetres", 1.0),
