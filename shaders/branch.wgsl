@@ -1,5 +1,5 @@
-// The tree of rays that grows behind a primary ray: mirror images, and what is seen through things. src/cpu/trace.rs
-// decides what is left in doubt here.
+// The tree of rays that grows behind a primary ray: mirror images, and what is seen through things. Referee:
+// src/cpu/tree.rs.
 
 // A ray of the tree.
 struct Branch {

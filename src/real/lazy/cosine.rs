@@ -44,20 +44,7 @@ fn pi(bits: usize) -> IBig {
 pub(super) fn cosine(angle: f64, bits: usize) -> Ball {
     let precision = bits + GUARD;
     let square = radians_squared(angle, precision);
-    let mut term = IBig::ONE << precision;
-    let mut sum = IBig::ZERO;
-    let mut k = 0_i64;
-    while !term.is_zero() {
-        if k % 4 == 0 {
-            sum += &term;
-        } else {
-            sum -= &term;
-        }
-        term = ((&term * &square) >> precision) / IBig::from((k + 1) * (k + 2));
-        k += 2;
-    }
-    let exp = -(precision as i64);
-    Ball::new(sum, exp, Mag::two_to(exp + 32))
+    series(IBig::ONE << precision, 0, &square, precision)
 }
 
 /// 1 − the cosine of 0 to 1 degrees, known to so many bits of itself, not of 1.
@@ -71,16 +58,22 @@ pub(super) fn versine(angle: f64, bits: usize) -> Ball {
     let zeros = usize::try_from(2 * (6 - exponent)).unwrap_or(0);
     let precision = bits + GUARD + zeros;
     let square = radians_squared(angle, precision);
-    let mut term = square.clone() / IBig::from(2);
-    let mut sum = IBig::ZERO;
-    let mut k = 2_i64;
+    let first = square.clone() / IBig::from(2);
+    series(first, 2, &square, precision)
+}
+
+/// The cosine's series from the term φ^k/k! on, which counts as positive, in fixed point; the ball has 2³² units in the
+/// last place.
+fn series(first: IBig, mut k: i64, square: &IBig, precision: usize) -> Ball {
+    let (mut term, mut sum, mut adds) = (first, IBig::ZERO, true);
     while !term.is_zero() {
-        if k % 4 == 2 {
+        if adds {
             sum += &term;
         } else {
             sum -= &term;
         }
-        term = ((&term * &square) >> precision) / IBig::from((k + 1) * (k + 2));
+        adds = !adds;
+        term = ((&term * square) >> precision) / IBig::from((k + 1) * (k + 2));
         k += 2;
     }
     let exp = -(precision as i64);
