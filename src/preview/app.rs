@@ -396,6 +396,11 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.closing.store(true, Ordering::Relaxed);
+        // A frame just after a change of the size closes the gate; whoever waits there would be waited for below. All
+        // of them are gone before eframe takes the surface down.
+        self.gpu.submit_gate.open();
+        self.worker.end();
+        self.inspector.end();
         // What is being written into the scene's file is written to its end; pictures are given up.
         for thread in self.threads.drain(..) {
             // A panic was printed when it happened.

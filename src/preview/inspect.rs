@@ -88,15 +88,21 @@ impl Inspector {
             questions.put(question);
         }
     }
-}
 
-impl Drop for Inspector {
-    fn drop(&mut self) {
+    /// Waits until it does not use the device any more. The gate for submissions has to be open, since it may wait
+    /// there.
+    pub(super) fn end(&mut self) {
         self.questions = None;
         if let Some(thread) = self.thread.take() {
             // A panic of the thread was printed when it happened.
             let _ = thread.join();
         }
+    }
+}
+
+impl Drop for Inspector {
+    fn drop(&mut self) {
+        self.end();
     }
 }
 

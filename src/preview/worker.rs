@@ -141,13 +141,21 @@ impl Worker {
     }
 }
 
-impl Drop for Worker {
-    fn drop(&mut self) {
+impl Worker {
+    /// Gives up what is under way, and waits until nothing of it uses the device any more. The gate for submissions has
+    /// to be open, since the work may wait there.
+    pub(super) fn end(&mut self) {
         self.wishes.close();
         if let Some(thread) = self.thread.take() {
             // A panic of the worker was printed when it happened.
             let _ = thread.join();
         }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.end();
     }
 }
 

@@ -281,6 +281,21 @@ fn a_storm_of_sizes_is_survived_while_a_slow_scene_renders() {
     close(program);
 }
 
+/// Frames after a change of the size keep all others from the device. One that ends the program waits for them.
+#[test]
+fn it_can_be_closed_just_after_its_size_changed() {
+    let display = Display::start(1400, 900);
+    let (path, _) = small("lit/mirror_and_glass.txt");
+    for i in 0..8_u32 {
+        // It takes seconds, so that it renders whenever it is closed.
+        let options = ["--size", "800x600", "--samples", "256"];
+        let program = open(&display, &path, &options);
+        program.window.resize(700 + 50 * i, 600);
+        std::thread::sleep(std::time::Duration::from_millis(100 * u64::from(i)));
+        close(program);
+    }
+}
+
 #[test]
 fn the_window_ends_by_its_key_too() {
     let display = Display::start(1400, 900);
