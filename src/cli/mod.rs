@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod doctor;
 mod dump;
+mod inherited;
 mod outputs;
 mod picture;
 mod preview;
@@ -165,10 +166,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    // Without a handler Ctrl-C only leaves an unfinished file behind, which is no reason not to start.
-    if let Err(error) = ctrlc::set_handler(interrupted) {
-        log::warn!("Ctrl-C may leave an unfinished file: {error}");
-    }
+    inherited::on_signals(interrupted);
     let ended = match cli.command {
         None => render::filter(&cli.filter),
         Some(Command::Render(args)) => render::run(&args),

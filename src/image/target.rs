@@ -9,6 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{Format, OutputError};
+use crate::files::is_same_file;
 
 /// Links followed before they are called a loop, as Linux does.
 const MAX_LINKS: usize = 40;
@@ -48,6 +49,19 @@ impl Target {
             }
             _ => Ok(Format::Ppm),
         }
+    }
+
+    /// Whether what goes to one of them would be in the way of what goes to the other: one file, that is there or to
+    /// come.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let (Self::Path(a), Self::Path(b)) = (self, other) else {
+            return self == other;
+        };
+        let end = |path: &Path| match find(path) {
+            Ok(Found::Nothing(end) | Found::File(end, _)) => Some(end),
+            Ok(Found::Special) | Err(_) => None,
+        };
+        a == b || is_same_file(a, b) || matches!((end(a), end(b)), (Some(a), Some(b)) if a == b)
     }
 
     /// Whether this is stdout, by one of the names that systems give it: if it was redirected to a file then that name
@@ -214,6 +228,18 @@ mod tests {
             message.contains("none") && message.contains("does not exist"),
             "{message}"
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn two_names_of_a_file_to_come_are_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = |name: &str| Target::Path(folder.path().join(name));
+        std::os::unix::fs::symlink("a", folder.path().join("link")).unwrap();
+        for (name, same) in [("a", true), ("./a", true), ("link", true), ("b", false)] {
+            assert_eq!(target("a").is_same(&target(name)), same, "{name}");
+        }
+        assert!(!target("a").is_same(&Target::Stdout));
     }
 
     #[cfg(unix)]

@@ -160,6 +160,7 @@ impl SceneBuilder {
             filename: filename.to_owned(),
             path: filename.into(),
             texels: Arc::new(texels),
+            remark: None,
         };
         self.add_texture(name, Some(picture))
     }

@@ -59,6 +59,8 @@ pub(super) struct TexturePicture {
     pub(super) path: PathBuf,
     /// Its texels.
     pub(super) texels: Arc<Texels>,
+    /// What is odd about its file.
+    pub(super) remark: Option<String>,
 }
 
 impl TexturePicture {
@@ -73,6 +75,7 @@ impl TexturePicture {
             filename: filename.to_owned(),
             path: PathBuf::from(filename),
             texels: Arc::new(texels),
+            remark: None,
         }
     }
 }
@@ -120,6 +123,7 @@ impl Assembly {
                     filename: picture.filename,
                     path: picture.path,
                     texels: picture.texels,
+                    remark: picture.remark,
                 });
             }
             EntityKind::Light { spot } => {
@@ -264,6 +268,7 @@ impl Draft {
             filename,
             path,
             texels,
+            remark,
         } = texture.clone();
         Self {
             name,
@@ -271,6 +276,7 @@ impl Draft {
                 filename,
                 path,
                 texels,
+                remark,
             }),
             ..Self::default()
         }

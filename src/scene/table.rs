@@ -7,6 +7,7 @@ use super::draft::Draft;
 use super::kind::{Class, EntityKind};
 use super::limit::Limit;
 use super::number;
+use crate::procedural::Family;
 
 pub use super::limit::MAX_PIXELDIM;
 
@@ -211,14 +212,14 @@ const PROCEDURAL_PLANE: &[Attribute] = &[row(
     "shader",
     "0",
     Take::Integers(1, |d| &mut d.shader),
-    Limit::Below(PPLANE_SHADERS),
+    Limit::Shader(Family::Pplane),
 )];
 
 const PROCEDURAL_SPHERE: &[Attribute] = &[row(
     "shader",
     "0",
     Take::Integers(1, |d| &mut d.shader),
-    Limit::Below(PSPHERE_SHADERS),
+    Limit::Shader(Family::Psphere),
 )];
 
 const FINITE: &[Attribute] = &[

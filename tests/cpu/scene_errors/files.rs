@@ -12,32 +12,32 @@ fn texture_files() {
     check_texture(
         b"P6 65536 65536 255\n0123456789",
         expect![[r#"
-        error: texture `wood.ppm`: ends early: 65536 x 65536 texels are 12884901888 bytes, and there are 10
-          --> scene.txt:2:25
-          |
-        2 | texture wood { filename wood.ppm }
-          |                         ^^^^^^^^
-    "#]],
+            error: texture `wood.ppm`: ends early: 65536 x 65536 pixels are 12884901888 bytes, and there are 10
+              --> scene.txt:2:25
+              |
+            2 | texture wood { filename wood.ppm }
+              |                         ^^^^^^^^
+        "#]],
     );
     check_texture(
         b"P6 2 2 255\n0123456789",
         expect![[r#"
-        error: texture `wood.ppm`: ends early: 2 x 2 texels are 12 bytes, and there are 10
-          --> scene.txt:2:25
-          |
-        2 | texture wood { filename wood.ppm }
-          |                         ^^^^^^^^
-    "#]],
+            error: texture `wood.ppm`: ends early: 2 x 2 pixels are 12 bytes, and there are 10
+              --> scene.txt:2:25
+              |
+            2 | texture wood { filename wood.ppm }
+              |                         ^^^^^^^^
+        "#]],
     );
     check_texture(
         b"P6 0 0 255\n",
         expect![[r#"
-        error: texture `wood.ppm`: has no texels: it is 0 x 0
-          --> scene.txt:2:25
-          |
-        2 | texture wood { filename wood.ppm }
-          |                         ^^^^^^^^
-    "#]],
+            error: texture `wood.ppm`: has no pixels: it is 0 x 0
+              --> scene.txt:2:25
+              |
+            2 | texture wood { filename wood.ppm }
+              |                         ^^^^^^^^
+        "#]],
     );
     check_texture(
         b"P6 1 1 65535\nabcdef",
@@ -113,6 +113,8 @@ fn missing_texture_file() {
               |
             2 | texture wood { filename no/such/wood.ppm }
               |                         ^^^^^^^^^^^^^^^^
+              |
+              = help: looked for at `no/such/wood.ppm`, in the current folder
 
             error: `filename` takes a file name, found none
               --> scene.txt:3:16
