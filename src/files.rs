@@ -22,6 +22,13 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
+/// Whether a name is one that systems and shells give to a stream, as `/dev/stdin` and what `<(…)` becomes: it says
+/// nothing of a folder or a file.
+pub fn is_stream(path: &Path) -> bool {
+    let streams = ["/dev/stdin", "/dev/fd", "/proc/self/fd"];
+    cfg!(unix) && streams.iter().any(|stream| path.starts_with(stream))
+}
+
 /// Why the system refuses, in words that are the same on every system where the reason is a common one, and without
 /// its number.
 pub(crate) fn reason(refusal: &io::Error) -> String {

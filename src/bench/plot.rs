@@ -86,16 +86,17 @@ fn captions(svg: &mut Svg, y: f64, lines: &[String]) {
     }
 }
 
-/// A text in lines that are no wider than `room`, for as long as its words are not.
+/// A text in lines that are no wider than `room`; of a word that is wider alone, a path perhaps, its end.
 fn wrap(text: &str, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
+        let word = &end_of(word, room);
         match lines.last_mut() {
             Some(line) if text_width(line) + text_width(word) + text_width(" ") <= room => {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word.clone()),
         }
     }
     lines

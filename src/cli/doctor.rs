@@ -199,6 +199,8 @@ mod tests {
         assert!(verdict(&[], None).contains(install_hint()));
         let broken = [adapter("a", Some("it is too old"))];
         assert!(verdict(&broken, None).contains("none of the adapters can be used"));
+        // Its driver is there: another one would not help.
+        assert!(!verdict(&broken, None).contains("install"));
         assert!(to_text(&broken, None).contains("it is too old"));
     }
 

@@ -27,10 +27,11 @@ use std::env;
 use std::path::Path;
 use std::process::{self, ExitCode};
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 
 use args::RenderOptions;
+use plumb::image::Format;
 
 /// What `--version` and the reports call the program.
 pub(crate) const SOFTWARE: &str = concat!("plumb ", env!("CARGO_PKG_VERSION"));
@@ -214,6 +215,13 @@ fn usage(error: &clap::Error) -> ExitCode {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => ExitCode::from(FAILED),
             _ => ExitCode::SUCCESS,
         };
+    }
+    // A picture's name behind the scene's, as other programs have it.
+    if error.kind() == ErrorKind::UnknownArgument
+        && let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg)
+        && Format::from_path(Path::new(argument)).is_ok()
+    {
+        say::talk(&format!("\n  tip: to name the picture: -o {argument}\n"));
     }
     if matches!(
         error.kind(),

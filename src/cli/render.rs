@@ -10,6 +10,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::ExactTracer;
 use plumb::diagnostic::visible_text;
+use plumb::files::is_stream;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, PixelFault, Report, Settings};
@@ -124,7 +125,8 @@ impl<'a> RenderCommand<'a> {
         let Some(file) = self.file else {
             return Ok(Target::Stdout);
         };
-        let Some(stem) = file.file_stem().filter(|stem| !stem.is_empty()) else {
+        let stem = file.file_stem().filter(|stem| !stem.is_empty());
+        let Some(stem) = stem.filter(|_| !is_stream(file)) else {
             bail!(
                 "{} has no name to call the picture by: give one with -o",
                 file.display()

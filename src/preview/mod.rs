@@ -170,6 +170,7 @@ fn plain(told: &str) -> &str {
                 .strip_prefix(": ")
         })
         .unwrap_or(told)
+        .trim_end_matches('.')
 }
 
 /// Room for the picture as it is, the panels beside it and below, within reason.
@@ -187,7 +188,8 @@ mod tests {
 
     #[test]
     fn no_path_of_the_build_is_told() {
-        let told = "os error at /home/a/registry/winit/linux/mod.rs:765: no DISPLAY is set: really";
+        let told =
+            "os error at /home/a/registry/winit/linux/mod.rs:765: no DISPLAY is set: really.";
         assert_eq!(plain(told), "no DISPLAY is set: really");
         assert_eq!(plain("Exit Failure: 1"), "Exit Failure: 1");
     }

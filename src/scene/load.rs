@@ -49,14 +49,10 @@ pub fn load(path: &Path) -> Result<Scene, LoadError> {
     Ok(parse(&path.to_string_lossy(), &bytes, folder_of(path))?)
 }
 
-/// The folder that the names of a scene's textures start at: that of its file, or the current one where the name is a
-/// shell's for a stream, as `/dev/stdin` and the name that `<(…)` becomes.
+/// The folder that the names of a scene's textures start at: that of its file, or the current one for a stream.
 fn folder_of(path: &Path) -> &Path {
-    let is_stream = ["/dev/stdin", "/dev/fd", "/proc/self/fd"]
-        .iter()
-        .any(|stream| path.starts_with(stream));
     match path.parent() {
-        Some(folder) if !(is_stream && cfg!(unix)) => folder,
+        Some(folder) if !files::is_stream(path) => folder,
         _ => Path::new(""),
     }
 }

@@ -87,6 +87,9 @@ impl Pictures {
 
 /// Where a file was looked for that is not there, if its name alone does not say so.
 fn looked_for(path: &Path, folder: &Path, filename: &str) -> Option<String> {
+    if ['"', '\''].iter().any(|mark| filename.starts_with(*mark)) {
+        return Some(String::from("a file name stands without quotation marks"));
+    }
     if path.exists() || Path::new(filename).is_absolute() {
         return None;
     }

@@ -180,6 +180,9 @@ fn textures_of_a_stream_lie_in_the_current_folder() {
         let ran = desk.pipe(&args, &scene).ends(0);
         assert_eq!(ran.stdout, desk.read("framed.ppm"), "{name}");
     }
+    // Nor has it a name that would be the picture's.
+    desk.pipe(&["render", "/dev/fd/0"], &scene)
+        .fails_with(&["give one with -o"]);
 }
 
 /// Netpbm's rules, for what is laid on walls and for what is compared: one white space ends the header.

@@ -116,6 +116,59 @@ fn numbers_with_other_marks_are_told_as_before() {
     );
 }
 
+/// Signs between an attribute and its values, and behind them.
+#[test]
+fn values_with_signs() {
+    check_rest(
+        "plane wall { material = green normal = 0 0 1 point : 0 0 0 }\nsphere s { material green; center 1 2 3 radius 1; }",
+        expect![[r#"
+            error: `=` cannot stand behind `material`
+              --> scene.txt:3:23
+              |
+            3 | plane wall { material = green normal = 0 0 1 point : 0 0 0 }
+              |                       ^
+              |
+              = help: remove it
+
+            error: `=` cannot stand behind `normal`
+              --> scene.txt:3:38
+              |
+            3 | plane wall { material = green normal = 0 0 1 point : 0 0 0 }
+              |                                      ^
+              |
+              = help: remove it
+
+            error: `:` cannot stand behind `point`
+              --> scene.txt:3:52
+              |
+            3 | plane wall { material = green normal = 0 0 1 point : 0 0 0 }
+              |                                                    ^
+              |
+              = help: remove it
+
+            error: there is no material `green;`
+              --> scene.txt:4:21
+              |
+            4 | sphere s { material green; center 1 2 3 radius 1; }
+              |                     ^^^^^^
+              |
+              = help: write `green`: white space ends a name
+
+            error: `1;` is not a number
+              --> scene.txt:4:48
+              |
+            4 | sphere s { material green; center 1 2 3 radius 1; }
+              |                                                ^^
+              |
+              = help: write the number alone, like 1
+        "#]],
+    );
+    // A name may be any of these signs.
+    let named = "material = { ambient 1 1 1 }\nplane p { material = normal 0 0 1 point 0 0 -1 }";
+    let told = complaints([super::CAMERA, named].concat());
+    assert!(told.starts_with("no complaint"), "{told}");
+}
+
 #[test]
 fn the_older_language_is_recognised() {
     check(

@@ -105,7 +105,8 @@ fn texture_files() {
 fn missing_texture_file() {
     check(
         format!(
-            "{CAMERA}texture wood {{ filename no/such/wood.ppm }}\ntexture none {{ filename }}"
+            "{CAMERA}texture wood {{ filename no/such/wood.ppm }}\ntexture none {{ filename }}\n\
+             texture marked {{ filename \"wood.ppm\" }}"
         ),
         expect![[r#"
             error: texture `no/such/wood.ppm`: there is no such file
@@ -121,6 +122,14 @@ fn missing_texture_file() {
               |
             3 | texture none { filename }
               |                ^^^^^^^^
+
+            error: texture `"wood.ppm"`: there is no such file
+              --> scene.txt:4:27
+              |
+            4 | texture marked { filename "wood.ppm" }
+              |                           ^^^^^^^^^^
+              |
+              = help: a file name stands without quotation marks
         "#]],
     );
 }
