@@ -75,9 +75,9 @@ fn nearer(closest: ptr<function, Hit>, intersection: PrimaryIntersection, object
 fn find_closest_object(ray: Ray) -> Hit {
     var closest: Hit;
 //#insert unrolled
-//#if rectangle_loop
-    for (var i = 0u; i < RECTANGLES; i += 1u) {
-        nearer(&closest, rectangle_hits(rectangles[i], ray), rectangles[i].object, i, rectangles[i].group);
+//#if polygon_loop
+    for (var i = 0u; i < POLYGONS; i += 1u) {
+        nearer(&closest, polygon_hits(polygons[i], ray), polygons[i].object, i, polygons[i].group);
     }
 //#end
 //#if plane_loop

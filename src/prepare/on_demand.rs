@@ -42,7 +42,7 @@ pub(super) type Balls = Arc<Vec<(DVec3, f64)>>;
 pub(super) fn balls(scene: &Scene) -> Balls {
     let ball = |shape: &Shape| match *shape {
         Shape::Sphere { center, radius } => (center, radius),
-        Shape::Plane { .. } => (DVec3::ZERO, 0.0),
+        Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => (DVec3::ZERO, 0.0),
     };
     Arc::new(scene.objects.iter().map(|o| ball(&o.shape)).collect())
 }

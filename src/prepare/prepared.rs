@@ -70,7 +70,8 @@ impl<R: Real> Prepared<R> {
         let materials = scene.objects.iter().map(|object| object.material);
         let is_plane = scene.objects.iter().map(|object| match object.shape {
             Shape::Plane { .. } => true,
-            Shape::Sphere { .. } => false,
+            Shape::Sphere { .. } | Shape::Quadric(_) => false,
+            Shape::Triangle(_) => true,
         });
         prepared.materials = Arc::new(materials.collect());
         prepared.is_plane = Arc::new(is_plane.collect());
@@ -154,7 +155,14 @@ impl<R: Real> Prepared<R> {
                     center,
                     radius,
                 )),
-                Shape::Sphere { .. } => {}
+                Shape::Triangle(ref triangle) => planes.extend(Plane::of_triangle(
+                    &scene.camera,
+                    &camera,
+                    view,
+                    index,
+                    triangle,
+                )),
+                Shape::Sphere { .. } | Shape::Quadric(_) => {}
             }
         }
         let any_transparent = scene

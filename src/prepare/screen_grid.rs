@@ -84,7 +84,7 @@ impl ScreenGrid {
     ) -> (Vec<Sphere<R>>, Self) {
         let ball = |object: usize| match scene.objects[object].shape {
             Shape::Sphere { center, radius } => Some((center, radius)),
-            Shape::Plane { .. } => None,
+            Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => None,
         };
         let outline = Outlines::new(scene, camera, view);
         let seen = |object: usize| {

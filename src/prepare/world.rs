@@ -138,7 +138,11 @@ impl<R: Real> World<R> {
                     radius: R::exact(radius) * unit,
                     lights_on_surface: lights_on_sphere(scene, center, radius),
                 }),
-                Shape::Sphere { .. } => {}
+                Shape::Triangle(ref triangle) => {
+                    let plane = WorldPlane::of_triangle(scene, scale, object, triangle);
+                    world.planes.push(plane);
+                }
+                Shape::Sphere { .. } | Shape::Quadric(_) => {}
             }
         }
         world

@@ -95,7 +95,7 @@ const LOW: f64 = 1.0 / 32.0;
 
 /// The light that is nearest to the plane without lying in it, if it is nearer than `LOW`; of those that the GPU has
 /// bits for.
-fn low_light(scene: &Scene, normal: DVec3, point: DVec3) -> Option<usize> {
+pub(super) fn low_light(scene: &Scene, normal: DVec3, point: DVec3) -> Option<usize> {
     let lights = scene.lights.iter().map(|light| light.location);
     let heights = lights.map(|light| {
         let height = normal.dot(light - point).abs();

@@ -64,11 +64,7 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
     let has = |feature: Feature| features.contains(&feature);
     let mut counts = vec![
         (Feature::PlaneLoop, "PLANES", packed.planes.len()),
-        (
-            Feature::RectangleLoop,
-            "RECTANGLES",
-            packed.rectangles.len(),
-        ),
+        (Feature::PolygonLoop, "POLYGONS", packed.polygons.len()),
         (Feature::SphereLoop, "SPHERES", packed.spheres.len()),
         (Feature::Tables, "TABLES", packed.objects.len()),
         (Feature::Tables, "COLUMNS", packed.tables.columns as usize),

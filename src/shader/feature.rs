@@ -31,14 +31,14 @@ features! {
     AmbientOnly = "ambient_only",
     /// Primary rays can hit planes without end.
     Plane = "plane",
-    /// Primary rays can hit rectangles.
-    Rectangle = "rectangle",
+    /// Primary rays can hit rectangles or triangles.
+    Polygon = "polygon",
     /// The z ≤ τ rule decides pixels.
     Front = "front",
     /// Planes stand in a buffer.
     PlaneLoop = "plane_loop",
-    /// Rectangles stand in a buffer.
-    RectangleLoop = "rectangle_loop",
+    /// They stand in a buffer.
+    PolygonLoop = "polygon_loop",
     /// Primary rays can hit spheres.
     Sphere = "sphere",
     /// Spheres are many, in cells of the screen.
@@ -123,8 +123,10 @@ features! {
     LightsOnSurface = "lights_on_surface",
     /// Some light is so near to a plane that its height above it is told.
     LowLight = "low_light",
-    /// Rays from anywhere can hit rectangles.
-    RectangleAnywhere = "rectangle_anywhere",
+    /// Rays from anywhere can hit rectangles or triangles.
+    SidesAnywhere = "sides_anywhere",
+    /// Rays from anywhere can hit triangles.
+    TriangleAnywhere = "triangle_anywhere",
     /// Rays from anywhere go through a loop.
     WorldLoop = "world_loop",
     /// Rays from anywhere go through planes in a loop.

@@ -14,8 +14,8 @@ use crate::settings::{SamplePattern, Settings};
 pub struct FeatureSet {
     /// There are planes without end.
     pub planes: bool,
-    /// There are rectangles that primary rays can hit.
-    pub rectangles: bool,
+    /// There are rectangles or triangles that primary rays can hit.
+    pub polygons: bool,
     /// Some plane crosses the screen, so that the z > τ rule decides pixels.
     pub front: bool,
     /// There are spheres that primary rays can hit.
@@ -67,8 +67,10 @@ pub struct LitFeatures {
     pub low_light: bool,
     /// There are planes, of either kind.
     pub planes: bool,
-    /// There are rectangles.
-    pub rectangles: bool,
+    /// There are rectangles or triangles.
+    pub sides: bool,
+    /// There are triangles.
+    pub triangles: bool,
     /// There are spheres.
     pub spheres: bool,
     /// Some of them are outside the tree.
@@ -112,17 +114,17 @@ impl FeatureSet {
             .planes
             .iter()
             .map(|p| p.front)
-            .chain(packed.rectangles.iter().map(|r| r.front));
+            .chain(packed.polygons.iter().map(|r| r.front));
         let certified = settings.has_gpu_bounds();
         let several = settings.supersampling();
         Self {
             planes: !packed.planes.is_empty(),
-            rectangles: !packed.rectangles.is_empty(),
+            polygons: !packed.polygons.is_empty(),
             front: fronts.into_iter().any(|front| front != [0.0, 0.0, 1.0]),
             spheres: !packed.spheres.is_empty(),
             screen_grid: packed.screen_grid.is_some(),
             groups: packed.planes.iter().any(|p| p.group != 0)
-                || packed.rectangles.iter().any(|r| r.group != 0),
+                || packed.polygons.iter().any(|r| r.group != 0),
             tables: !packed.tables.words.is_empty(),
             certified,
             bvh: !packed.bvh.is_empty(),
@@ -150,7 +152,8 @@ impl FeatureSet {
                         .any(|sphere| sphere.lights_on_surface != 0),
                 low_light: lit.planes.iter().any(|plane| plane.height != 0.0),
                 planes: !lit.planes.is_empty(),
-                rectangles: lit.planes.iter().any(|plane| plane.bounded != 0),
+                sides: lit.planes.iter().any(|plane| plane.bounded != 0),
+                triangles: !lit.third_sides.is_empty(),
                 spheres: !lit.spheres.is_empty(),
                 loose_spheres: lit.in_tree < lit.spheres.len(),
                 max_path: (settings.limits.max_path * two_to(-packed.scale)) as f32,
@@ -172,7 +175,7 @@ impl FeatureSet {
 
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
-        self.planes || self.rectangles || self.spheres
+        self.planes || self.polygons || self.spheres
     }
 
     /// Words of a record that the shader leaves of a pixel of which only some samples are sure; 0 where it leaves none.
@@ -269,10 +272,10 @@ impl<'a> Conditions<'a> {
             Feature::AnyObject => any,
             Feature::AmbientOnly => any && !lit,
             Feature::Plane => set.planes,
-            Feature::Rectangle => set.rectangles,
+            Feature::Polygon => set.polygons,
             Feature::Front => set.front,
             Feature::PlaneLoop => set.planes && loops,
-            Feature::RectangleLoop => set.rectangles && loops,
+            Feature::PolygonLoop => set.polygons && loops,
             Feature::Sphere => set.spheres,
             Feature::ScreenGrid => set.spheres && set.screen_grid,
             Feature::SphereLoop => set.spheres && loops && !set.screen_grid,
@@ -292,7 +295,7 @@ impl<'a> Conditions<'a> {
             Feature::Index => certified && (tiled || textured || pplane),
             Feature::Doubtful => certified && (lit || tiled || textured || pplane || psphere),
             Feature::Mixed => {
-                let shapes = [set.planes, set.rectangles, set.spheres];
+                let shapes = [set.planes, set.polygons, set.spheres];
                 set.screen_grid || shapes.iter().filter(|shape| **shape).count() > 1
             }
             Feature::Modulated => set.kinds.iter().any(|kind| kind.modulates_ambient(lit)),
@@ -323,7 +326,8 @@ impl<'a> Conditions<'a> {
             Feature::Cone => light.cone,
             Feature::LightsOnSurface => light.lights_on_surface,
             Feature::LowLight => light.low_light,
-            Feature::RectangleAnywhere => light.rectangles,
+            Feature::SidesAnywhere => light.sides,
+            Feature::TriangleAnywhere => light.triangles,
             Feature::WorldLoop => lit && loops && (light.planes || light.loose_spheres),
             Feature::WorldPlaneLoop => lit && loops && light.planes,
             Feature::WorldSphereLoop => lit && loops && light.loose_spheres,

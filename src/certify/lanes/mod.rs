@@ -16,7 +16,7 @@ use crate::settings::Settings;
 use crate::shader::bounds::{self, U};
 use crate::shader::kind::SurfaceKind;
 use crate::shader::pack::Packed;
-use crate::shader::records::{Plane, Rectangle, Sphere};
+use crate::shader::records::{Plane, Polygon, Sphere};
 
 /// Pixels at once.
 pub const LANES: usize = 8;
@@ -177,8 +177,8 @@ impl Lanes {
         };
         let at = from(packed.camera.numbers.anchor);
         let mut closest = Closest::new();
-        for rectangle in &packed.rectangles {
-            rectangle_hits(rectangle, &at, &mut closest);
+        for polygon in &packed.polygons {
+            polygon_hits(polygon, &at, &mut closest);
         }
         for plane in &packed.planes {
             plane_hits(plane, &at, &mut closest);
@@ -272,10 +272,10 @@ fn plane_hits(plane: &Plane, at: &(Lane, f32), closest: &mut Closest) {
 /// A form that is 1 everywhere.
 const ALWAYS: [f32; 3] = [0.0, 0.0, 1.0];
 
-fn rectangle_hits(rectangle: &Rectangle, at: &(Lane, f32), closest: &mut Closest) {
-    let inverse = linear(&rectangle.inverse, at);
+fn polygon_hits(polygon: &Polygon, at: &(Lane, f32), closest: &mut Closest) {
+    let inverse = linear(&polygon.inverse, at);
     let (mut hit, mut possible) = ([true; LANES], [true; LANES]);
-    let r = rectangle;
+    let r = polygon;
     let sides = [&r.side_0, &r.side_1, &r.side_2, &r.side_3];
     for (side, error) in sides
         .into_iter()

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, U, W_ROUNDINGS, round_up, upper_bound};
 use super::kind::SurfaceKind;
 use super::records::{
-    BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere,
+    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Sphere,
     SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
 use crate::prepare::plane::Sides;
@@ -42,8 +42,8 @@ pub struct Packed {
     pub kinds: Vec<SurfaceKind>,
     /// Planes without end that a primary ray can hit.
     pub planes: Vec<Plane>,
-    /// Rectangles that a primary ray can hit.
-    pub rectangles: Vec<Rectangle>,
+    /// Rectangles and triangles that a primary ray can hit.
+    pub polygons: Vec<Polygon>,
     /// The tree over the spheres of a lit scene, for rays from anywhere; empty without.
     pub bvh: Vec<BvhNode>,
     /// Depth of the tree.
@@ -105,7 +105,7 @@ impl Packed {
                 .collect(),
             kinds: Vec::new(),
             planes: Vec::new(),
-            rectangles: Vec::new(),
+            polygons: Vec::new(),
             bvh: tree
                 .iter()
                 .flat_map(|bvh| &bvh.nodes)
@@ -135,7 +135,7 @@ impl Packed {
         } else {
             let planes = packed.planes.iter().map(|p| p.object);
             let objects: Vec<u32> = planes
-                .chain(packed.rectangles.iter().map(|r| r.object))
+                .chain(packed.polygons.iter().map(|r| r.object))
                 .collect();
             for object in objects {
                 packed.pack_surface(prepared, object as usize, &mut textures, 0);
@@ -166,13 +166,16 @@ impl Packed {
                     self.planes
                         .push(primary::plane(&scene.camera, plane, screen, group))
                 }
-                Sides::Rectangle(strips) => self.rectangles.push(primary::rectangle(
-                    &scene.camera,
-                    plane,
-                    strips,
-                    screen,
-                    group,
-                )),
+                Sides::Rectangle(strips) => {
+                    let sides = primary::rectangle(&scene.camera, plane, strips, screen);
+                    let base = primary::plane(&scene.camera, plane, screen, group);
+                    self.polygons.push(primary::polygon(base, sides));
+                }
+                Sides::Triangle(sides) => {
+                    let sides = primary::triangle(&scene.camera, sides, screen);
+                    let base = primary::plane(&scene.camera, plane, screen, group);
+                    self.polygons.push(primary::polygon(base, sides));
+                }
             }
         }
         let max_inverse = |place: usize| {
@@ -282,7 +285,7 @@ impl Packed {
 
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
-        self.planes.len() + self.rectangles.len() + self.spheres.len()
+        self.planes.len() + self.polygons.len() + self.spheres.len()
     }
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
@@ -302,7 +305,7 @@ impl Packed {
             Some(_) => 0,
             None => self.spheres.len(),
         };
-        self.planes.len() + self.rectangles.len() + spheres
+        self.planes.len() + self.polygons.len() + spheres
     }
 
     /// Where the list of each cell starts in what this returns, and where the last one ends; then the lists.

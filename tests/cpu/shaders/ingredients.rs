@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, SamplePattern, Settings};
 use plumb::scene::{
-    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
+    Beam, Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
     Texture, TextureMode,
 };
 use plumb::shader::compose::{Entry, compose};
@@ -193,18 +193,18 @@ fn rectangle(surface: Surface) -> Object {
 }
 
 fn lights(ingredient: Ingredient) -> Vec<Light> {
-    let light = |y, cone| Light {
-        cone,
+    let light = |y, beam| Light {
+        beam,
         ..light(DVec3::new(4.0, y, 2.0))
     };
     match ingredient {
         // What materials do is seen by light alone.
-        Lamp | Mirror | Glass | Glint => vec![light(6.0, None)],
-        LampInFloor => vec![light(-1.0, None)],
-        LampOverFloor => vec![light(-0.999, None)],
+        Lamp | Mirror | Glass | Glint => vec![light(6.0, Beam::Everywhere)],
+        LampInFloor => vec![light(-1.0, Beam::Everywhere)],
+        LampOverFloor => vec![light(-0.999, Beam::Everywhere)],
         Spotlight => vec![light(
             6.0,
-            Some(Cone {
+            Beam::Cone(Cone {
                 point: DVec3::ZERO,
                 theta: 20.0,
             }),

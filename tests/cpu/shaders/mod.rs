@@ -197,7 +197,7 @@ fn what_is_not_used_is_not_there() {
                     | LampOverFloor
             )
         }),
-        ("rectangle_hits", &|i| {
+        ("polygon_hits", &|i| {
             matches!(i, Rectangle | Texplane(_) | Coplanar)
         }),
         ("plane.front.x *", &|i| i == PlaneAcrossTheScreen),
