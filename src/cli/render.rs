@@ -140,16 +140,11 @@ impl<'a> RenderCommand<'a> {
 
     /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
     fn check(&self, target: &Target) -> Result<()> {
-        let path = match target {
-            target if target.is_stdout() => {
-                picture::check_stdout()?;
-                // The file that it was redirected to, where there is a name for that.
-                Path::new("/dev/stdout")
-            }
-            Target::Path(path) => path,
-            Target::Stdout => return Ok(()),
-        };
-        if let Some(what) = self.scene.is_made_from(source::file(self.file), path) {
+        if target.is_stdout() {
+            picture::check_stdout()?;
+        }
+        let file = source::file(self.file);
+        if let Some(what) = self.scene.is_made_from(file, target.path()) {
             bail!("{target} is {what}: give the picture another name with -o");
         }
         Ok(())

@@ -62,9 +62,11 @@ pub(crate) fn talk(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Prints a line to stderr that begins with the program's name. Names in it may hold anything.
+/// Prints text to stderr that begins with the program's name. Names in it may hold anything; lines are those of
+/// libraries' errors.
 pub(crate) fn note(text: &str) {
-    talk(&format!("plumb: {}\n", visible_text(text)));
+    let lines: Vec<String> = text.lines().map(visible_text).collect();
+    talk(&format!("plumb: {}\n", lines.join("\n")));
 }
 
 /// Prints an error: scene errors as their listing, everything else as one line with its causes.

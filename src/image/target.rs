@@ -54,14 +54,20 @@ impl Target {
     /// Whether what goes to one of them would be in the way of what goes to the other: one file, that is there or to
     /// come.
     pub fn is_same(&self, other: &Self) -> bool {
-        let (Self::Path(a), Self::Path(b)) = (self, other) else {
-            return self == other;
-        };
+        let (a, b) = (self.path(), other.path());
         let end = |path: &Path| match find(path) {
             Ok(Found::Nothing(end) | Found::File(end, _)) => Some(end),
             Ok(Found::Special) | Err(_) => None,
         };
         a == b || is_same_file(a, b) || matches!((end(a), end(b)), (Some(a), Some(b)) if a == b)
+    }
+
+    /// A name of it; stdout has one on most systems, which leads to the file that it was redirected to.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Path(path) if !self.is_stdout() => path,
+            _ => Path::new("/dev/stdout"),
+        }
     }
 
     /// Whether this is stdout, by one of the names that systems give it: if it was redirected to a file then that name

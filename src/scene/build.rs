@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 
 use super::check;
 use super::draft::{Assembly, Draft, TexturePicture};
-use super::kind::{Class, EntityKind};
+use super::kind::{Class, EntityKind, LightClass};
 use super::model::{Material, Scene, Texels, TextureMode};
 use super::table;
 use super::texture::Pictures;
@@ -305,7 +305,7 @@ impl SceneBuilder {
         emissivity: impl Into<DVec3>,
     ) -> &mut Self {
         let draft = light(name, location, emissivity);
-        self.add(EntityKind::Light { spot: false }, draft)
+        self.add(EntityKind::Light(LightClass::Light), draft)
     }
 
     /// Adds a spotlight: a light with a cone towards `point` (not its location), of half angle `theta` in degrees
@@ -324,7 +324,7 @@ impl SceneBuilder {
             theta: [theta],
             ..light(name, location, emissivity)
         };
-        self.add(EntityKind::Light { spot: true }, draft)
+        self.add(EntityKind::Light(LightClass::Spotlight), draft)
     }
 
     /// The scene.

@@ -15,7 +15,7 @@ use crate::diagnostic::Diagnostic;
 pub(super) const COMMENT_HELP: &str = "comments begin with `#`";
 
 /// Tokens of a vector with punctuation, brackets and commas standing alone: no more are looked at.
-const MAX_VECTOR: usize = 12;
+const MAX_VECTOR: usize = 24;
 
 /// A space that separates nothing, since it is not ASCII's: its bytes in the token, and what it is called.
 fn strange_space(token: &[u8]) -> Option<(Range<usize>, String)> {
@@ -151,7 +151,7 @@ pub(super) fn older_language(text: &[u8]) -> Option<Diagnostic> {
     let message = "this looks like the course's older language, without names: plumb reads the one with names";
     let example: Vec<&str> = EXAMPLE
         .lines()
-        .skip_while(|line| line.starts_with('#'))
+        .filter(|line| !line.is_empty() && !line.starts_with('#'))
         .take(EXAMPLE_LINES)
         .collect();
     let help = format!(
@@ -163,7 +163,7 @@ pub(super) fn older_language(text: &[u8]) -> Option<Diagnostic> {
 
 /// The notes' first example, and how many of its lines show what the language looks like.
 const EXAMPLE: &str = include_str!("../../scenes/notes/walls.txt");
-const EXAMPLE_LINES: usize = 11;
+const EXAMPLE_LINES: usize = 10;
 
 impl Parser<'_> {
     /// Takes numbers with punctuation around or between them, if that is what comes next. `count` is how many numbers

@@ -342,8 +342,12 @@ fn what_can_be_changed_alone_is_in_no_relation() {
     changeable.extend([Measure::Center, Measure::Radius].map(|which| Target::Sphere(0, which)));
     let related: Vec<&str> = table::ENTITIES
         .iter()
-        .filter_map(|entity| entity.relation.as_ref())
-        .flat_map(|relation| [relation.attribute, relation.other])
+        .flat_map(|entity| entity.relations)
+        .flat_map(|relation| {
+            [relation.attribute]
+                .into_iter()
+                .chain(relation.others.iter().copied())
+        })
         .collect();
     assert!(related.contains(&"xdir") && related.contains(&"location"));
     for target in changeable {

@@ -187,7 +187,6 @@ fn the_older_language_is_recognised() {
                   worlddim 8 6
                   viewpoint 4 3 6
                 }
-    
                 material green
                 {
                   ambient 0 5 0
