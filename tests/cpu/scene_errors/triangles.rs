@@ -152,7 +152,9 @@ fn a_normal_in_the_plane() {
 
 #[test]
 fn a_vertex_is_missing() {
-    check_rest("tri t { material green v0 0 0 0 v1 1 0 0 }", expect![[r#"
+    check_rest(
+        "tri t { material green v0 0 0 0 v1 1 0 0 }",
+        expect![[r#"
         error: this `triangle` lacks `vertex3`
           --> scene.txt:3:1
           |
@@ -160,5 +162,6 @@ fn a_vertex_is_missing() {
           | ^^^^^
           |
           = help: add `vertex3 0 1 0`, for example
-    "#]]);
+    "#]],
+    );
 }
