@@ -1,8 +1,8 @@
 //! Binary PPM (P6) of 8 bits a channel: its header as we write it, and whole pictures as anybody wrote them.
 //!
-//! On the lowest floor, since two read with it: `scene` the textures, `image` the pictures to compare. It keeps netpbm's
-//! rules, so that a file is the same picture here and there. No memory is taken for what a header claims before the
-//! bytes are known to be there.
+//! On the lowest floor, since two read with it: `scene` the textures, `image` the pictures to compare. It keeps
+//! netpbm's rules, so that a file is the same picture here and there. No memory is taken for what a header claims
+//! before the bytes are known to be there.
 
 use std::io::{self, BufRead, Read};
 

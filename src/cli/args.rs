@@ -198,8 +198,8 @@ A second picture of the same size, .png or .ppm, that shows what decided each pi
         value_name = "N",
         value_parser = threads,
         long_help = "\
-Threads that plumb computes with on the CPU; without it as many as there are cores. A software driver, such as lavapipe \
-or SwiftShader, computes on the CPU with threads of its own, which this does not bound: --backend cpu does without it."
+Threads that plumb computes with on the CPU; without it as many as there are cores. A software driver, such as \
+lavapipe or SwiftShader, computes on the CPU with threads of its own, which this does not bound: --backend cpu does without it."
     )]
     pub(crate) threads: Option<usize>,
     /// Rows of a band, the piece in which a picture is rendered and written; it changes no byte

@@ -102,8 +102,8 @@ impl From<&str> for Wrong {
 ///
 /// PPM must be binary with 8 bits a channel. PNG may have at most 8 bits a channel and no transparent pixel; grey and
 /// palettes become RGB. EXR's values are quantised as a rendering's are: floor(255·v), at least 0 and at most 255, not
-/// a number being 0. That is exact for the 32-bit values in the file; a rendering quantises before it rounds to 32 bits,
-/// so a byte may differ by one from that of its own PPM.
+/// a number being 0. That is exact for the 32-bit values in the file; a rendering quantises before it rounds to 32
+/// bits, so a byte may differ by one from that of its own PPM.
 ///
 /// # Errors
 /// [`ReadError::Io`] if the system does not let us, [`ReadError::Picture`] if the file is not such a picture.

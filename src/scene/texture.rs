@@ -1,6 +1,7 @@
 //! Reads the pictures of textures: binary PPM (P6) with maxval 255, by the rules of [`ppm`].
 //!
-//! Used by the parser for the value of `filename`, and by the builder. A picture that several textures use is read once.
+//! Used by the parser for the value of `filename`, and by the builder. A picture that several textures use is read
+//! once.
 
 use std::collections::HashMap;
 use std::fs::File;
