@@ -165,7 +165,7 @@ fn dump_shows_every_stage() {
 fn probe_lists_every_triangle_that_is_hit() {
     let gem = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lit/gem.txt");
     let desk = Desk::new();
-    let asked = ["probe", gem, "320", "280", "--backend", "cpu"];
+    let asked = ["probe", gem, "320", "280"];
     let text = desk.run(&asked).ends(0).text();
     let listed = |name: &str| {
         let mut lines = text.lines().map(str::trim_start);
