@@ -168,7 +168,7 @@ fn probe_lists_every_triangle_that_is_hit() {
     let asked = ["probe", gem, "320", "280"];
     let text = desk.run(&asked).ends(0).text();
     let listed = |name: &str| {
-        let mut lines = text.lines().map(str::trim_start);
+        let mut lines = text.lines().map(|line| line.trim_start_matches([' ', '*']));
         lines.any(|line| line.starts_with(name) && line.contains("hit   t = "))
     };
     let hit = text
