@@ -32,6 +32,8 @@ pub struct Lit {
     pub glint: bool,
     /// A light beyond those that have a bit lies on a surface.
     pub unnumbered_light_on_surface: bool,
+    /// Some light is a projector.
+    pub projectors: bool,
 }
 
 /// Marks a sphere in [`LitObject::place`].
@@ -73,6 +75,7 @@ impl Lit {
             third_sides,
             spheres: spheres.iter().map(|s| world_sphere(world, s)).collect(),
             in_tree,
+            projectors: world.lights.iter().any(|light| light.projector.is_some()),
             mirror: used().any(|material| material.mirror),
             transparent: used().any(|material| material.transparent),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
@@ -122,6 +125,7 @@ fn light(light: &prepare::Light<Bounded>) -> Light {
         cone,
         // Narrow cones are told by their sines on the CPU alone.
         narrow: _,
+        projector: _,
     } = *light;
     let zero = V3::exact(glam::DVec3::ZERO);
     let (axis, cosine) = cone.unwrap_or((zero, Bounded::exact(-2.0)));
