@@ -69,9 +69,6 @@ impl Packed {
             return Some("the camera's numbers are too large or too small");
         }
         if let Some(lit) = &self.lit {
-            if lit.projectors {
-                return Some("a projector's picture is not made");
-            }
             if lit.unnumbered_light_on_surface {
                 return Some("a light after the first 32 lies on a surface");
             }
