@@ -188,8 +188,8 @@ fn pplane_from_point(at: PlanePoint) -> vec3f {
 //#if texels
 //#if certified
 
-// How far indices of texels are from the next texels', less their errors. At the ends of a stretched picture indices are
-// clamped, and one beyond is as good as the last.
+// How far indices of texels are from the next texels', less their errors. At the ends of a stretched picture indices
+// are clamped, and one beyond is as good as the last.
 fn texel_margin(size: vec2f, repeats: bool, index: vec2f, errors: vec2f) -> vec2f {
     let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), repeats | any(size < vec2f(2.0)));
     let lone = vec2f(select(0.0, 2.0, !repeats & (size.x < 2.0)), select(0.0, 2.0, !repeats & (size.y < 2.0)));

@@ -42,8 +42,8 @@ pub struct World<R> {
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
     /// equal spheres: from one of them the other is at t = 0, a miss.
     pub groups: Arc<Vec<u32>>,
-    /// For each light: the number of the plane of its picture, on which it brings nothing; one that no object has, if it
-    /// has none.
+    /// For each light: the number of the plane of its picture, on which it brings nothing; one that no object has, if
+    /// it has none.
     pub picture_planes: Arc<Vec<u32>>,
     /// For each object that a ray can hit: its place in `planes` or `spheres`.
     pub places: Arc<Vec<usize>>,
