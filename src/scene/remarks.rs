@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use glam::DVec3;
 
 use super::{Beam, Light, Object, Scene, Surface};
+use crate::diagnostic::quote;
 use crate::real::rational::{dot, is_zero, ratio3, sub};
 
 /// Most names that a remark lists.
@@ -53,6 +54,12 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
             list(&idle)
         ));
     }
+    for texture in &scene.textures {
+        if let Some(odd) = &texture.remark {
+            let file = quote(texture.filename.as_bytes());
+            found.push(format!("texture {file} {odd}"));
+        }
+    }
     for (what, names) in [
         (
             "material",
@@ -98,7 +105,7 @@ fn list(names: &[&str]) -> String {
     let shown: Vec<String> = names
         .iter()
         .take(SHOWN)
-        .map(|name| format!("`{name}`"))
+        .map(|name| quote(name.as_bytes()))
         .collect();
     shown.join(", ")
         + if names.len() > SHOWN {

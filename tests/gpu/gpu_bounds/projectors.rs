@@ -114,6 +114,7 @@ fn world(lanterns: &[Lantern]) -> World {
             filename: "t.ppm".into(),
             path: "t.ppm".into(),
             texels: texels.into(),
+            remark: None,
         }],
     };
     World::of(scene, &Settings::default())
@@ -171,7 +172,7 @@ pub(crate) fn passages(
     );
     let inputs = [
         (13, bytemuck::cast_slice(&lit.lights)),
-        (18, bytemuck::cast_slice(&lit.projectors)),
+        (17, bytemuck::cast_slice(&lit.projectors)),
     ];
     let wgsl = change(&world.wgsl);
     let answers = run(gpu, &wgsl, &body, &items, &inputs, count, 2);
