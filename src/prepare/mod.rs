@@ -20,6 +20,7 @@ pub mod material;
 pub mod on_demand;
 pub mod plane;
 pub mod prepared;
+pub mod projector;
 pub mod screen_grid;
 pub mod sphere;
 pub mod surface;

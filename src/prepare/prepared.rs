@@ -61,7 +61,8 @@ impl<R: Real> Prepared<R> {
         let lit = !scene.lights.is_empty();
         // Of many spheres the screen grid leaves out equal ones.
         let equal_spheres = lit || scene.objects.len() < screen_grid::WORTHWHILE;
-        let groups = Arc::new(groups(scene, equal_spheres));
+        let (groups, picture_planes) = groups(scene, equal_spheres);
+        let groups = Arc::new(groups);
         let hidden = hidden(scene, &groups, view.screen_tolerance);
         let mut prepared = Self::of(scene, view, true, &hidden);
         if scene.objects.len() >= screen_grid::WORTHWHILE {
@@ -85,7 +86,7 @@ impl<R: Real> Prepared<R> {
                 scene,
                 scale,
                 view.screen_tolerance,
-                Arc::clone(&groups),
+                (Arc::clone(&groups), Arc::new(picture_planes)),
                 &hidden,
             )
         });

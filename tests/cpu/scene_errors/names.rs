@@ -83,13 +83,13 @@ fn unsupported_entity() {
               |
               = help: add `material name`, `vertex1 0 0 0`, `vertex2 1 0 0`, `vertex3 0 1 0`, for example
 
-            error: `projector` is not supported
+            error: this `projector` lacks `location`, `emissivity`, `normal`, `point`, `xdir`, `dimensions`, `texname`, `mode`
               --> scene.txt:5:1
               |
             5 | projector p { }
-              | ^^^^^^^^^
+              | ^^^^^^^^^^^
               |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
+              = help: add `location 0 5 0`, `emissivity 5 5 5`, `normal 0 1 0`, `point 0 0 0`, `xdir 1 0 0`, `dimensions 1 1`, `texname name`, `mode 0`, for example
 
             error: `revsurf` is not supported
               --> scene.txt:6:1
