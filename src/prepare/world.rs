@@ -10,6 +10,7 @@ use super::bvh::{self, Bvh};
 use super::extent::Extent;
 use super::material::Light;
 use super::on_demand::{Balls, OnDemandSpheres};
+use super::quadric::Quadric;
 use super::world_plane::WorldPlane;
 use super::world_sphere::{WorldSphere, lights_on_sphere};
 use crate::real::rational::{power_of_two, ratio, two_to};
@@ -23,6 +24,8 @@ pub struct World<R> {
     pub planes: Vec<WorldPlane<R>>,
     /// All spheres that a ray can hit: those of the tree in its order, then the others in file order.
     pub spheres: Vec<WorldSphere<R>>,
+    /// All quadrics that a ray can hit, in file order.
+    pub quadrics: Arc<Vec<Quadric<R>>>,
     /// The tree over the spheres, if they are many.
     pub bvh: Option<Arc<Bvh>>,
     /// What spheres are made from that are not in `spheres`.
@@ -32,7 +35,7 @@ pub struct World<R> {
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
     /// equal spheres: from one of them the other is at t = 0, a miss.
     pub groups: Arc<Vec<u32>>,
-    /// For each object that a ray can hit: its place in `planes` or `spheres`.
+    /// For each object that a ray can hit: its place in `planes`, `quadrics` or `spheres`.
     pub places: Arc<Vec<usize>>,
     /// The rule H.z ≤ τ for positions.
     pub highest: R,
@@ -48,13 +51,18 @@ impl<R: Real> World<R> {
         screen_tolerance: f64,
         groups: Arc<Vec<u32>>,
         hidden: &[bool],
+        quadrics: &Arc<Vec<Quadric<R>>>,
     ) -> Self {
         let places = Arc::default();
         let mut world = Self::of(scene, scale, screen_tolerance, groups, places, hidden, true);
+        world.quadrics = Arc::clone(quadrics);
         world.bvh = bvh::build(&mut world.spheres).map(Arc::new);
         let mut places = vec![0; scene.objects.len()];
         for (place, plane) in world.planes.iter().enumerate() {
             places[plane.object] = place;
+        }
+        for (place, quadric) in world.quadrics.iter().enumerate() {
+            places[quadric.object] = place;
         }
         for (place, sphere) in world.spheres.iter().enumerate() {
             places[sphere.object] = place;
@@ -72,9 +80,11 @@ impl<R: Real> World<R> {
         before: &World<S>,
         hidden: &[bool],
         on_demand: Option<&OnDemandSpheres>,
+        quadrics: &Arc<Vec<Quadric<R>>>,
     ) -> Self {
         let (groups, places) = (Arc::clone(&before.groups), Arc::clone(&before.places));
         Self {
+            quadrics: Arc::clone(quadrics),
             bvh: before.bvh.clone(),
             on_demand: on_demand.cloned(),
             brightest: Arc::clone(&before.brightest),
@@ -105,6 +115,7 @@ impl<R: Real> World<R> {
         let mut world = Self {
             planes: Vec::new(),
             spheres: Vec::new(),
+            quadrics: Arc::default(),
             bvh: None,
             on_demand: None,
             lights: scene

@@ -481,7 +481,7 @@ pub(super) static ENTITIES: [Entity; 17] = [
 ];
 
 /// Entity types of the language's later life that are known and not supported.
-pub(super) const UNSUPPORTED: &[&str] = &["revsurf", "quadric", "pquadric", "projector"];
+pub(super) const UNSUPPORTED: &[&str] = &["revsurf", "projector"];
 
 /// The most rows that an entity has: see the test.
 pub(super) const MAX_ROWS: usize = 8;

@@ -15,7 +15,7 @@ use super::truth::{FirstObject, PixelHit};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::image::Picture;
-use crate::scene::{Scene, Shape};
+use crate::scene::{Object, Scene, Shape};
 use crate::settings::Settings;
 use crate::shader::literal::{literal, vector};
 use crate::shader::preprocess::{Directives, preprocess};
@@ -32,6 +32,9 @@ pub enum TextbookError {
     /// Every ray asks every object.
     #[error("the textbook's ways stop at {MOST_SPHERES} spheres, and the scene has {0}")]
     TooManySpheres(usize),
+    /// They have no formula for such surfaces.
+    #[error("the textbook's ways have no quadrics")]
+    Quadrics,
     /// The loops of some pixels came near what the driver allows.
     #[error("{0} pixels need more rounds of loops than a driver is sure to go")]
     GaveUp(u64),
@@ -71,6 +74,10 @@ impl<'a> Textbook<'a> {
         prepared: bool,
         report: bool,
     ) -> Result<Self, TextbookError> {
+        let is_quadric = |object: &Object| matches!(object.shape, Shape::Quadric(_));
+        if scene.objects.iter().any(is_quadric) {
+            return Err(TextbookError::Quadrics);
+        }
         let spheres = scene
             .objects
             .iter()

@@ -70,6 +70,8 @@ pub struct Packed {
     pub dark: f32,
     /// The largest coordinate of the tree's boxes, all three summed.
     pub tree_size: f32,
+    /// Why the scene is the CPU's, with or without error bounds, if it is.
+    pub cpu_only: Option<&'static str>,
     /// Why the error bounds cannot be relied on, if they cannot.
     pub unprovable: Option<&'static str>,
 }
@@ -123,6 +125,7 @@ impl Packed {
             lit: None,
             dark: 0.0,
             tree_size: 0.0,
+            cpu_only: (!prepared.quadrics.is_empty()).then_some("quadrics are too much"),
             unprovable: None,
         };
         packed.pack_primary(prepared, &surfaces, screen);
@@ -153,7 +156,7 @@ impl Packed {
             .map(|world| Lit::new(prepared, world, &packed));
         packed.dark = packed.darkness();
         packed.tree_size = round_up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
-        packed.unprovable = packed.doubtful_numbers();
+        packed.unprovable = packed.cpu_only.or_else(|| packed.doubtful_numbers());
         packed
     }
 
