@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 use proptest::sample::select;
 
+use super::quadrics::quadrics;
 use super::strategy::{
     ball, cross, hair, light, material, moved, nearly, normal, place, plane, point, radius, show,
 };
@@ -24,6 +25,7 @@ pub(super) fn objects() -> BoxedStrategy<String> {
         3 => lamps_on_things(),
         4 => room(),
         2 => slanted_mirror(),
+        4 => quadrics(),
     ]
     .boxed()
 }
