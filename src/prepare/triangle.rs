@@ -15,7 +15,7 @@ use super::plane::{Front, Plane, Side, Sides, Step};
 use super::world_plane::{WorldPlane, low_light};
 use crate::real::rational::{Ratio, abs, cross, dot, power_of_two, ratio3, sub, two_to};
 use crate::real::{Bounded, Real, V3};
-use crate::scene::{self, Light, Scene, Triangle};
+use crate::scene::{self, Light, Triangle};
 use crate::settings::ViewParameters;
 
 /// Which vertices each side runs between.
@@ -206,12 +206,12 @@ fn side_step<R: Real>(
 impl<R: Real> WorldPlane<R> {
     /// Prepares a triangle of a lit scene.
     pub(super) fn of_triangle(
-        scene: &Scene,
+        view: DVec3,
+        lights: &[Light],
         scale: i32,
         object: usize,
         triangle: &Triangle,
     ) -> Self {
-        let view = scene.camera.viewpoint;
         let corners = corners::<R>(triangle, view, scale);
         let n = normal::<R>(triangle);
         let extent = Extent::Triangle(Box::new(EDGES.map(|[i, j]| {
@@ -242,9 +242,9 @@ impl<R: Real> WorldPlane<R> {
             fixed_coordinate: flat_axis(triangle)
                 .map(|(axis, at)| (axis, (R::exact(at) - R::exact(view[axis])) * unit)),
             extent,
-            lights_on_surface: lights_on_triangle(scene, triangle),
-            low_light: low_light(scene, near, first).map(|light| {
-                let above = V3::exact(scene.lights[light].location) - V3::exact(first);
+            lights_on_surface: lights_on_triangle(lights, triangle),
+            low_light: low_light(view, lights, near, first).map(|light| {
+                let above = V3::exact(lights[light].location) - V3::exact(first);
                 (light, direction.dot(above * unit) / length)
             }),
         }
@@ -252,11 +252,9 @@ impl<R: Real> WorldPlane<R> {
 }
 
 /// The lights that lie in the triangle's plane exactly, ascending.
-fn lights_on_triangle(scene: &Scene, triangle: &Triangle) -> Vec<usize> {
+fn lights_on_triangle(lights: &[Light], triangle: &Triangle) -> Vec<usize> {
     let on = |light: &Light| side_of(triangle, light.location) == Ordering::Equal;
-    (0..scene.lights.len())
-        .filter(|&i| on(&scene.lights[i]))
-        .collect()
+    (0..lights.len()).filter(|&i| on(&lights[i])).collect()
 }
 
 /// Whether all of the triangle is before τ.

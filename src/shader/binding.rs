@@ -167,7 +167,7 @@ bindings! {
     binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
     binding 4, "polygons", READ, "array<Polygon>", "finite planes",
-        |f| f.contains(&Feature::PolygonLoop), Some(|p| records(&p.polygons));
+        |f| f.contains(&Feature::PolygonLoop) || f.contains(&Feature::GridTriangles), Some(|p| records(&p.polygons));
     binding 5, "spheres", READ, "array<Sphere>", "spheres",
         |f| f.contains(&Feature::SphereBuffer) && !f.contains(&Feature::SpherePoint), Some(|p| records(&p.spheres));
     binding 5, "spheres", READ, "array<SphereAndHit>", "spheres",

@@ -29,7 +29,13 @@ pub struct FeatureSet {
     /// Pixels come with a verdict.
     pub certified: bool,
     /// Spheres of a lit scene are many and have a tree.
-    pub bvh: bool,
+    pub sphere_tree: bool,
+    /// Triangles of a lit scene are many and have a tree.
+    pub triangle_tree: bool,
+    /// There are triangles in the cells of the screen.
+    pub grid_triangles: bool,
+    /// There are rectangles or triangles that are in no cell.
+    pub loose_polygons: bool,
     /// Objects stand in the text of the shader, not in buffers.
     pub unrolled: bool,
     /// An invocation makes four pixels side by side: of scenes so simple that storing is what costs.
@@ -65,8 +71,10 @@ pub struct LitFeatures {
     pub lights_on_surface: bool,
     /// Some light is next to a plane.
     pub low_light: bool,
-    /// There are planes, of either kind.
+    /// There are planes, of any kind.
     pub planes: bool,
+    /// Some of them are outside the tree.
+    pub loose_planes: bool,
     /// There are rectangles or triangles.
     pub sides: bool,
     /// There are triangles.
@@ -127,7 +135,10 @@ impl FeatureSet {
                 || packed.polygons.iter().any(|r| r.group != 0),
             tables: !packed.tables.words.is_empty(),
             certified,
-            bvh: !packed.bvh.is_empty(),
+            sphere_tree: packed.lit.as_ref().is_some_and(|lit| lit.in_tree > 0),
+            triangle_tree: packed.triangle_root.is_some(),
+            grid_triangles: packed.grid_polygons > 0,
+            loose_polygons: packed.loose_polygons() > 0,
             unrolled: packed.screen_grid.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
             quad: packed.screen_grid.is_none()
                 && packed.lit.is_none()
@@ -152,6 +163,7 @@ impl FeatureSet {
                         .any(|sphere| sphere.lights_on_surface != 0),
                 low_light: lit.planes.iter().any(|plane| plane.height != 0.0),
                 planes: !lit.planes.is_empty(),
+                loose_planes: lit.loose_planes > 0,
                 sides: lit.planes.iter().any(|plane| plane.bounded != 0),
                 triangles: !lit.third_sides.is_empty(),
                 spheres: !lit.spheres.is_empty(),
@@ -217,7 +229,8 @@ struct Conditions<'a> {
     /// What lights need; nothing without lights.
     light: LitFeatures,
     certified: bool,
-    bvh: bool,
+    sphere_tree: bool,
+    triangle_tree: bool,
     /// Objects stand in buffers.
     loops: bool,
     tiled: bool,
@@ -237,7 +250,8 @@ impl<'a> Conditions<'a> {
             lit,
             light: set.lit.filter(|_| any).unwrap_or_default(),
             certified: any && set.certified,
-            bvh: lit && set.bvh,
+            sphere_tree: lit && set.sphere_tree,
+            triangle_tree: lit && set.triangle_tree,
             loops: !set.unrolled,
             tiled: any && set.kinds.contains(&SurfaceKind::Tiled),
             textured: any && set.kinds.contains(&SurfaceKind::Textured),
@@ -261,7 +275,8 @@ impl<'a> Conditions<'a> {
             lit,
             light,
             certified,
-            bvh,
+            sphere_tree,
+            triangle_tree,
             loops,
             tiled,
             textured,
@@ -275,15 +290,21 @@ impl<'a> Conditions<'a> {
             Feature::Polygon => set.polygons,
             Feature::Front => set.front,
             Feature::PlaneLoop => set.planes && loops,
-            Feature::PolygonLoop => set.polygons && loops,
+            Feature::PolygonLoop => set.loose_polygons && loops,
             Feature::Sphere => set.spheres,
-            Feature::ScreenGrid => set.spheres && set.screen_grid,
+            Feature::ScreenGrid => (set.spheres || set.grid_triangles) && set.screen_grid,
+            Feature::GridSpheres => set.spheres && set.screen_grid,
+            Feature::GridTriangles => set.grid_triangles,
             Feature::SphereLoop => set.spheres && loops && !set.screen_grid,
             Feature::SphereBuffer => set.spheres && (loops || self.feature(Feature::SpherePoint)),
             // In a lit scene with a tree, hits on spheres are looked at as those of rays from anywhere are.
-            Feature::SpherePoint => set.spheres && if lit { !bvh } else { psphere },
-            Feature::SphereBeyond => light.spheres && (light.mirror || light.transparent || bvh),
-            Feature::Bvh => bvh,
+            Feature::SpherePoint => set.spheres && if lit { !sphere_tree } else { psphere },
+            Feature::SphereBeyond => {
+                light.spheres && (light.mirror || light.transparent || sphere_tree)
+            }
+            Feature::Bvh => sphere_tree || triangle_tree,
+            Feature::SphereTree => sphere_tree,
+            Feature::TriangleTree => triangle_tree,
             Feature::FirstOrder => certified && !lit && (tiled || textured || pplane || psphere),
             Feature::Certified => certified,
             Feature::Moving => any && set.moving,
@@ -315,7 +336,7 @@ impl<'a> Conditions<'a> {
             Feature::LitSphere => light.spheres,
             Feature::WorldPlanes => light.planes,
             Feature::WorldSpheres => {
-                light.spheres && (loops || light.mirror || light.transparent || bvh)
+                light.spheres && (loops || light.mirror || light.transparent || sphere_tree)
             }
             Feature::Mirror => light.mirror,
             Feature::Transparent => light.transparent,
@@ -328,8 +349,8 @@ impl<'a> Conditions<'a> {
             Feature::LowLight => light.low_light,
             Feature::SidesAnywhere => light.sides,
             Feature::TriangleAnywhere => light.triangles,
-            Feature::WorldLoop => lit && loops && (light.planes || light.loose_spheres),
-            Feature::WorldPlaneLoop => lit && loops && light.planes,
+            Feature::WorldLoop => lit && loops && (light.loose_planes || light.loose_spheres),
+            Feature::WorldPlaneLoop => lit && loops && light.loose_planes,
             Feature::WorldSphereLoop => lit && loops && light.loose_spheres,
             // A helper comes in where a chosen shader names it, or another helper does.
             Feature::ColorWheel => self.asks("color_wheel("),

@@ -52,8 +52,9 @@ records! {
         front_error: f32,
         /// The side opposite the first.
         side_2: [f32; 3],
-        /// Nothing.
-        pad_0: Pad1,
+        /// 1/s is no larger; where triangles are many.
+        #[any_size = "it is only compared"]
+        max_inverse: f32,
         /// The side opposite the second.
         side_3: [f32; 3],
         /// Nothing.

@@ -22,8 +22,10 @@ pub struct Lit {
     pub third_sides: Vec<ThirdSide>,
     /// Every sphere; those of the tree come first.
     pub spheres: Vec<WorldSphere>,
-    /// How many of the spheres the tree holds.
+    /// How many of the spheres their tree holds.
     pub in_tree: usize,
+    /// How many of the planes are in no tree: the first.
+    pub loose_planes: usize,
     /// Some object is a mirror.
     pub mirror: bool,
     /// Some object lets light through.
@@ -73,6 +75,7 @@ impl Lit {
             third_sides,
             spheres: spheres.iter().map(|s| world_sphere(world, s)).collect(),
             in_tree,
+            loose_planes: world.loose_planes(),
             mirror: used().any(|material| material.mirror),
             transparent: used().any(|material| material.transparent),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
@@ -81,7 +84,7 @@ impl Lit {
 
     /// Iterations of the loops over objects outside the tree, for one ray.
     pub fn loop_iterations(&self) -> usize {
-        self.planes.len() + self.spheres.len() - self.in_tree
+        self.loose_planes + self.spheres.len() - self.in_tree
     }
 }
 

@@ -107,8 +107,8 @@ pub(super) fn triangle(
     [a, b, c, ([0.0, 0.0, 1.0], 0.0)]
 }
 
-/// The record of a plane with these sides.
-pub(super) fn polygon(base: Plane, [a, b, c, d]: [Form<3>; 4]) -> Polygon {
+/// The record of a plane with these sides; its hits' 1/s are at most `max_inverse`, where that is asked.
+pub(super) fn polygon(base: Plane, [a, b, c, d]: [Form<3>; 4], max_inverse: f32) -> Polygon {
     Polygon {
         inverse: base.inverse,
         object: base.object,
@@ -119,7 +119,7 @@ pub(super) fn polygon(base: Plane, [a, b, c, d]: [Form<3>; 4]) -> Polygon {
         side_1: b.0,
         front_error: base.front_error,
         side_2: c.0,
-        pad_0: Default::default(),
+        max_inverse,
         side_3: d.0,
         pad_1: Default::default(),
         side_errors: [a.1, b.1, c.1, d.1],
