@@ -1,23 +1,28 @@
-// Quadrics, for rays from anywhere, primary rays among them. Referee: src/cpu/quadric.rs.
+// Quadrics, for all rays. Referee: src/cpu/quadric.rs.
 //
-// About a point C next to a quadric its left side is p·Ap + 2 v·p + k, p = H − C. A line is asked by its direction D and
-// the perpendicular p from C to it, as spheres are: with the moment m = p × D the discriminant is
+// About a point C next to a quadric its left side is p·Ap + 2 v·p + k, p = H − C. As of a sphere, a line is known by its
+// direction D and the perpendicular p from C to it. With the moment m = p × D its discriminant is
 //
 //     −m·adj(A)m + 2 m·(AD × v) + (v·D)² − k D·AD,
 //
-// in which nothing is as large as the two sides of b² − 4ac, whose difference it is.
+// whose terms are not much larger than it: the two sides of b² − 4ac, of which it is the difference, may be.
 
 //#insert struct Quadric
 
+// A ray as quadrics see it.
 struct QuadricRay {
     base: vec3f,
     // Of unit length.
     dir: vec3f,
+    // Hits count only beyond this.
+    start: f32,
 //#if certified
     // As in `SecondaryRay`.
     base_error: f32,
     dir_error: f32,
     size: f32,
+    // How far `start` may be off.
+    start_error: f32,
 //#end
 }
 
@@ -30,16 +35,14 @@ struct Passage {
     gradient: vec3f,
     turn: vec3f,
 //#if certified
-    // How far the perpendicular, as a vector, and `along` may be off.
+    // How far the perpendicular, as a vector, and `along` may be off; and the others.
     off: f32,
-    // How far `turn` may be off.
-    turn_error: f32,
-    // How far `gradient` may be.
     gradient_error: f32,
+    turn_error: f32,
 //#end
 }
 
-// Rows of a symmetric matrix: its diagonal, then what stands beside it (yz, xz, xy).
+// The product of a symmetric matrix, its diagonal and what stands beside it (yz, xz, xy), with a vector.
 fn symmetric(diagonal: vec3f, beside: vec3f, v: vec3f) -> vec3f {
     return vec3f(diagonal.x * v.x + beside.z * v.y + beside.y * v.z,
         beside.z * v.x + diagonal.y * v.y + beside.x * v.z,
@@ -55,108 +58,275 @@ fn quadric_passage(quadric: Quadric, ray: QuadricRay) -> Passage {
     passage.gradient = barrier(symmetric(quadric.diagonal, quadric.beside, p) + quadric.slope);
     passage.turn = barrier(symmetric(quadric.diagonal, quadric.beside, ray.dir));
 //#if certified
-    let far = QUADRIC_FAR * (abs(passage.along) + abs(p.x) + abs(p.y) + abs(p.z));
+    let far = FAR_GROWTH * (abs(passage.along) + sum3(p));
     passage.off = SECOND_ORDER * ray.base_error + U * quadric.size
         + far * ((TURN + TURN_MORE * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
     let moved = symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(p)) + abs(quadric.slope);
-    passage.gradient_error = quadric.norm * passage.off + GRADIENT_ROUNDINGS * U * (moved.x + moved.y + moved.z);
+    passage.gradient_error = quadric.norm * passage.off + GRADIENT_ROUNDINGS * U * sum3(moved);
     passage.turn_error = quadric.norm * (ray.dir_error + GRADIENT_ROUNDINGS * U);
 //#end
     return passage;
 }
-
-// The roots: where along the ray its line meets the surface, the nearer one first.
-struct Roots {
-    t: vec2f,
 //#if certified
-    error: vec2f,
-    // Whether there are two roots, for sure; or whether there may be.
-    two: bool,
+
+fn sum3(v: vec3f) -> f32 {
+    return abs(v.x) + abs(v.y) + abs(v.z);
+}
+
+// A root: where the line meets the surface.
+struct Root {
+    t: f32,
+    error: f32,
+    // Whether it is within the quadric's borders and beyond the ray's start: for sure, or surely not.
+    counts: bool,
+    out: bool,
+}
+
+// What a root comes to.
+fn quadric_root(quadric: Quadric, ray: QuadricRay, t: f32, error: f32) -> Root {
+    let ahead = t - ray.start;
+    let ahead_error = error + ray.start_error;
+    let position = ray.base + t * ray.dir;
+    let margins = min(position - quadric.lower, quadric.upper - position);
+    let margin = min(min(margins.x, margins.y), margins.z);
+    let margin_error = SECOND_ORDER * (error + ray.base_error + abs(t) * ray.dir_error) + quadric.border_error
+        + POSITION_ROUNDINGS * U * (ray.size + abs(t));
+    var root: Root;
+    root.t = t;
+    root.error = error;
+    root.counts = (ahead > ahead_error) & (margin > margin_error) & (abs(t) < FARTHEST);
+    root.out = (ahead < -ahead_error) | (margin < -margin_error);
+    return root;
+}
+//#end
+
+// Where a ray meets a quadric first.
+struct QuadricHit {
+    t: f32,
+    // For sure, where pixels are certified.
+    hit: bool,
+//#if certified
+    error: f32,
+    // Whether it may be met; if so, from `low` to `high`.
     possible: bool,
-    // Whether a root is known no better than that it is farther away from `along` than this, on either side.
-    far: vec2<bool>,
-    beyond: f32,
-    along: f32,
-//#else
-    two: bool,
+    low: f32,
+    high: f32,
 //#end
 }
 
-fn quadric_roots(quadric: Quadric, ray: QuadricRay) -> Roots {
-    var roots: Roots;
+// `light` is where a shadow ray's light lies on the surface, which hides nothing from itself; else before the start.
+//#if certified
+fn quadric_meets(quadric: Quadric, ray: QuadricRay, light: f32, light_error: f32) -> QuadricHit {
+//#else
+fn quadric_meets(quadric: Quadric, ray: QuadricRay, light: f32) -> QuadricHit {
+//#end
     let passage = quadric_passage(quadric, ray);
     let p = passage.perpendicular;
     let e = passage.turn;
+    let g = passage.gradient;
+    let k = quadric.constant;
     let moment = barrier(cross(p, ray.dir));
     let turned = barrier(symmetric(quadric.adjoint_diagonal, quadric.adjoint_beside, moment));
     let slanted = barrier(cross(e, quadric.slope));
-    let slope = dot(quadric.slope, ray.dir);
+    let slope = barrier1(dot(quadric.slope, ray.dir));
     let a = barrier1(dot(ray.dir, e));
     let h = barrier1(dot(p, e) + slope);
-    let c = barrier1(dot(p, passage.gradient + quadric.slope) + quadric.constant);
-    let disc = barrier1(2.0 * dot(moment, slanted) - dot(moment, turned) + slope * slope - quadric.constant * a);
+    let c = barrier1(dot(p, g + quadric.slope) + k);
+    let disc = barrier1(2.0 * dot(moment, slanted) - dot(moment, turned) + slope * slope - k * a);
+    var met: QuadricHit;
 //#if certified
     let u = MOMENT_ROUNDINGS * U;
-    let length_p = abs(p.x) + abs(p.y) + abs(p.z);
+    let length_p = sum3(p);
+    let length_e = sum3(e);
+    let length_g = sum3(g);
     let length_v = quadric.slope_size;
-    // The moment turns with the line.
-    let moment_error = SECOND_ORDER * (passage.off + length_p * ray.dir_error) + MOMENT_ROUNDINGS * U * length_p;
-    let size = abs(moment);
-    let length_m = size.x + size.y + size.z;
-    let all_turned = dot(size, symmetric(abs(quadric.adjoint_diagonal), abs(quadric.adjoint_beside), size));
-    let length_turned = abs(turned.x) + abs(turned.y) + abs(turned.z);
-    let length_e = abs(e.x) + abs(e.y) + abs(e.z);
-    let all_e = dot(abs(ray.dir), symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(ray.dir)));
-    let a_error = 2.0 * SECOND_ORDER * length_e * ray.dir_error + quadric.norm * ray.dir_error * ray.dir_error + u * all_e;
-    let slope_error = length_v * (ray.dir_error + u);
-    let all_p = dot(abs(p), symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(p)));
-    let all_h = dot(abs(p), symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(ray.dir)));
-    let length_g = abs(passage.gradient.x) + abs(passage.gradient.y) + abs(passage.gradient.z);
-    let h_error = SECOND_ORDER * (length_e * passage.off + length_g * ray.dir_error) + u * (all_h + length_v)
-        + quadric.norm * passage.off * ray.dir_error;
-    let c_error = 2.0 * SECOND_ORDER * length_g * passage.off + quadric.norm * passage.off * passage.off
-        + u * (all_p + 2.0 * length_v * length_p + abs(quadric.constant));
-    let disc_error = moment_error * (2.0 * SECOND_ORDER * length_turned + quadric.adjoint_norm * moment_error)
-        + u * (all_turned + slope * slope + abs(quadric.constant) * all_e)
-        + 2.0 * SECOND_ORDER * length_v * (length_e * moment_error + (length_m + moment_error) * (passage.turn_error + u * length_e))
-        + slope_error * (2.0 * abs(slope) + slope_error) + abs(quadric.constant) * a_error + TINY_SQUARE;
-    roots.two = disc > disc_error;
-    roots.possible = disc > -disc_error;
+    let length_m = sum3(moment);
+    let d_error = ray.dir_error;
+    // Sums of the terms, none of them negative.
+    let all_turned = dot(abs(moment), symmetric(abs(quadric.adjoint_diagonal), abs(quadric.adjoint_beside), abs(moment)));
+    let along_d = symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(ray.dir));
+    let all_a = dot(abs(ray.dir), along_d);
+    let all_h = dot(abs(p), along_d) + length_v;
+    let all_c = dot(abs(p), symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(p)))
+        + 2.0 * length_v * length_p + abs(k);
+    let a_error = 2.0 * d_error * (SECOND_ORDER * length_e + quadric.norm * d_error) + u * all_a + LEAST_SLOPE;
+    let h_error = SECOND_ORDER * (length_e * passage.off + length_g * d_error)
+        + 2.0 * quadric.norm * passage.off * d_error + u * all_h + LEAST_SLOPE;
+    let c_error = 2.0 * passage.off * (SECOND_ORDER * length_g + quadric.norm * passage.off) + u * all_c;
+    let moment_error = SECOND_ORDER * (passage.off + length_p * d_error) + u * length_p;
+    let slope_error = length_v * (d_error + u);
+    let disc_error = 2.0 * moment_error * (SECOND_ORDER * sum3(turned) + quadric.adjoint_norm * moment_error)
+        + 2.0 * SECOND_ORDER * length_v
+            * (length_e * moment_error + (length_m + moment_error) * (passage.turn_error + u * length_e))
+        + slope_error * (2.0 * abs(slope) + slope_error) + abs(k) * a_error
+        + u * (all_turned + slope * slope + abs(k) * all_a) + TINY_SQUARE;
     let least = barrier1(max(disc, disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
-    let reach_error = root_error(least, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
+    let reach_error = disc_error * inverse_root * select(ROOT_NEAR, ROOT_FAR, least > ROOT_FAR_FROM * disc_error)
+        + ROOT_ROUNDINGS * U * root;
+    // h and the root have one sign in the sum, so that nothing cancels; in the difference they may.
+    let signed = select(root, -root, h < 0.0);
+    let sum = barrier1(-(h + signed));
+    let sum_error = h_error + reach_error + ROOT_ROUNDINGS * U * abs(sum);
+    let sum_known = abs(sum) > QUOTIENT_FROM * sum_error;
+    let a_known = abs(a) > QUOTIENT_FROM * a_error;
+    let by_sum = 1.0 / select(1.0, sum, sum_known);
+    let by_a = 1.0 / select(1.0, a, a_known);
+    // The roots are c/sum, which is difference/a, and sum/a.
+    let difference = signed - h;
+    let other = difference * by_a;
+    let other_error = QUOTIENT_GROWTH * (h_error + reach_error + abs(other) * a_error) * abs(by_a)
+        + ROOT_ROUNDINGS * U * (abs(other) + (abs(h) + root) * abs(by_a));
+    let quotient = c * by_sum;
+    let quotient_error = QUOTIENT_GROWTH * (c_error + abs(quotient) * sum_error) * abs(by_sum)
+        + ROOT_ROUNDINGS * U * abs(quotient);
+    let takes_other = a_known & (!sum_known | (other_error < quotient_error));
+    let one = select(quotient, other, takes_other);
+    let one_error = select(quotient_error, other_error, takes_other);
+    let two = sum * by_a;
+    let two_error = QUOTIENT_GROWTH * (sum_error + abs(two) * a_error) * abs(by_a) + ROOT_ROUNDINGS * U * abs(two);
+    let along = passage.along;
+    let places = barrier(vec3f(along + one, along + two, 0.0));
+    let place_errors = vec2f(one_error, two_error) + passage.off
+        + DISTANCE_ROUNDINGS * U * (abs(along) + vec2f(abs(one), abs(two)));
+    let swap = a_known & (one > two);
+    let near = quadric_root(quadric, ray, select(places.x, places.y, swap), select(place_errors.x, place_errors.y, swap));
+    var far = quadric_root(quadric, ray, select(places.y, places.x, swap), select(place_errors.y, place_errors.x, swap));
+    var first = near;
+    // A light on the surface is one of the roots.
+    if light > ray.start {
+        let near_apart = abs(near.t - light) > near.error + light_error;
+        let far_apart = abs(far.t - light) > far.error + light_error;
+        first.out |= !near_apart & far_apart;
+        first.counts &= near_apart;
+        far.out |= !far_apart & near_apart;
+        far.counts &= far_apart;
+    }
+    met.possible = (disc > -disc_error) & !(first.out & far.out & a_known);
+    let second = first.out & a_known;
+    met.t = select(first.t, far.t, second);
+    met.error = select(first.error, far.error, second);
+    met.hit = (disc > disc_error) & select(first.counts, far.counts, second);
+    met.low = met.t - met.error;
+    met.high = select(far.t + far.error, met.t + met.error, met.hit);
+    if !a_known {
+        // The other root is far away, before or behind: so far at least.
+        let away = max(abs(sum) - sum_error, 0.0) / (abs(a) + a_error) * LOWERED
+            - (passage.off + DISTANCE_ROUNDINGS * U * abs(along));
+        let behind = (along - away < ray.start - ray.start_error) & sum_known;
+        let beyond = along + away;
+        met.possible = disc > -disc_error;
+        met.hit &= behind & (met.low + 2.0 * met.error < beyond);
+        met.low = select(ray.start - ray.start_error, select(min(met.low, beyond), beyond, first.out), behind);
+        met.high = select(T_FAR, met.high, met.hit);
+    }
 //#else
-    roots.two = disc > 0.0;
     let root = sqrt(max(disc, 0.0));
+    let sum = -(h + select(root, -root, h < 0.0));
+    let roots = passage.along + vec2f(select(0.0, c / sum, sum != 0.0), select(T_FAR, sum / a, a != 0.0));
+    let near = min(roots.x, roots.y);
+    let far = max(roots.x, roots.y);
+    let near_counts = quadric_counts(quadric, ray, near) & !is_light(near, light, ray);
+    let far_counts = quadric_counts(quadric, ray, far) & !is_light(far, light, ray);
+    met.hit = (disc > 0.0) & (near_counts | far_counts);
+    met.t = select(far, near, near_counts);
 //#end
-    // h and the root have the same sign here, so that nothing cancels.
-    let sum = barrier1(-(h + select(root, -root, h < 0.0)));
-    let first = c / sum;
-    let second = sum / a;
-//#if certified
-    let sum_error = h_error + reach_error + 2.0 * U * abs(sum);
-    let first_known = abs(sum) > FIRST_ORDER_ROOT * sum_error;
-    let second_known = abs(a) > FIRST_ORDER_ROOT * a_error;
-    let first_error = SECOND_ORDER_ROOT * (c_error + abs(first) * sum_error) / abs(sum) + 4.0 * U * abs(first);
-    let second_error = SECOND_ORDER_ROOT * (sum_error + abs(second) * a_error) / abs(a) + 4.0 * U * abs(second);
-    roots.beyond = max(abs(sum) - sum_error, 0.0) / (abs(a) + a_error) * LOWERED;
-    roots.along = passage.along;
-    roots.two &= first_known;
-    let swap = first > second;
-    let values = vec2f(first, select(second, 0.0, !second_known));
-    let errors = vec2f(first_error, second_error);
-    let rounding = passage.off + 4.0 * U * (abs(passage.along) + abs(values));
-    let t = passage.along + values;
-    let error = errors + rounding;
-    // A root that is not known stands second.
-    let change = swap & second_known;
-    roots.t = select(t, t.yx, change);
-    roots.error = select(error, error.yx, change);
-    roots.far = vec2<bool>(!first_known, !second_known);
-//#else
-    let t = vec2f(passage.along + first, passage.along + second);
-    roots.t = vec2f(min(t.x, t.y), max(t.x, t.y));
-//#end
-    return roots;
+    return met;
 }
+//#if certified
+//#else
+
+// Whether a root is within the quadric's borders and beyond the ray's start.
+fn quadric_counts(quadric: Quadric, ray: QuadricRay, t: f32) -> bool {
+    let position = ray.base + t * ray.dir;
+    return (t > ray.start) & all(position >= quadric.lower) & all(position <= quadric.upper);
+}
+
+// Whether a root is the light that lies on the surface.
+fn is_light(t: f32, light: f32, ray: QuadricRay) -> bool {
+    return (light > ray.start) & (abs(t - light) < 1e-4 * light);
+}
+//#end
+
+// More than any distance, and still a number when multiplied by a direction.
+const T_FAR = 1e30f;
+//#if quadric
+
+// The quadric as a primary ray meets it.
+fn quadric_hits(quadric: Quadric, ray: Ray) -> PrimaryIntersection {
+    let dir = barrier(ray.w * ray.inverse_length);
+    let length = ray.w2 * ray.inverse_length;
+    var intersection: PrimaryIntersection;
+//#if certified
+    let met = quadric_meets(quadric, QuadricRay(vec3f(0.0), dir, 0.0, 0.0, DIR_ERROR, 0.0, 0.0), -1.0, 0.0);
+    intersection.hit = met.hit & (met.t > FIRST_ORDER * met.error);
+    intersection.possible = met.possible;
+    // What is not hit for sure may be as near as `low`.
+    let nearest = max(select(met.low, met.t, intersection.hit), NEAREST);
+    intersection.inverse = length / nearest;
+    intersection.error = intersection.inverse
+        * (select(0.0, SECOND_ORDER * met.error / nearest, intersection.hit) + LENGTH_ERROR);
+//#else
+    let met = quadric_meets(quadric, QuadricRay(vec3f(0.0), dir, 0.0), -1.0);
+    intersection.hit = met.hit;
+    intersection.inverse = length / max(met.t, 1e-30);
+//#end
+    return intersection;
+}
+//#end
+//#if lit
+
+// The quadric as a ray from anywhere meets it.
+fn quadric_hits_from(quadric: Quadric, ray: SecondaryRay, range: Range) -> Intersection {
+    let on_surface = (quadric.lights_on_surface & range.light) != 0u;
+    let light = select(-1.0, range.limit, on_surface);
+    var intersection: Intersection;
+//#if certified
+    let start_error = select(range.beyond_error, ray.start_error, range.beyond == 0.0);
+    let seen = QuadricRay(ray.base, ray.dir, range.beyond, ray.base_error, ray.dir_error, ray.size, start_error);
+    let met = quadric_meets(quadric, seen, light, range.limit_error);
+    let left = quadric.group == range.skip;
+    intersection.t = met.t;
+    intersection.error = met.error;
+    intersection.hit = met.hit & !left;
+    intersection.possible = met.possible & !left;
+    intersection.low = met.low;
+//#if transparent
+    intersection.high = met.high;
+//#end
+//#else
+    let met = quadric_meets(quadric, QuadricRay(ray.base, ray.dir, range.beyond), light);
+    intersection.t = met.t;
+    intersection.hit = met.hit & (quadric.group != range.skip);
+//#end
+    return intersection;
+}
+
+// The unit normal where a ray meets a quadric at a distance; in the fourth component the bound of its error.
+//#if certified
+fn quadric_normal(quadric: Quadric, ray: SecondaryRay, t: f32, error: f32) -> vec4f {
+    let seen = QuadricRay(ray.base, ray.dir, 0.0, ray.base_error, ray.dir_error, ray.size, 0.0);
+//#else
+fn quadric_normal(quadric: Quadric, ray: SecondaryRay, t: f32) -> vec4f {
+    let seen = QuadricRay(ray.base, ray.dir, 0.0);
+//#end
+    let passage = quadric_passage(quadric, seen);
+    let further = t - passage.along;
+    let gradient = barrier(passage.gradient + further * passage.turn);
+    let square = dot(gradient, gradient);
+    let inverse = inverseSqrt(max(square, TINY_SQUARE));
+//#if certified
+    let turn = sum3(passage.turn);
+    let off = passage.gradient_error + abs(further) * passage.turn_error
+        + SECOND_ORDER * turn * (error + passage.off + U * (abs(t) + abs(passage.along)))
+        + GRADIENT_ROUNDINGS * U * (sum3(passage.gradient) + abs(further) * turn);
+    let share = off * inverse;
+    // A gradient that is hardly known has no direction.
+    let known = (share * FIRST_ORDER < 1.0) & (square > TINY_SQUARE);
+    return vec4f(gradient * inverse, select(2.0, SECOND_ORDER * share + NORMAL_ROUNDINGS * U, known));
+//#else
+    return vec4f(gradient * inverse, 0.0);
+//#end
+}
+//#end

@@ -198,6 +198,8 @@ bindings! {
     /// The third sides of the triangles among the planes.
     binding 17, "third_sides", READ, "array<ThirdSide>", "third sides of triangles",
         |f| f.contains(&Feature::TriangleAnywhere), Some(|p| of_lit(p, |lit| &lit.third_sides));
+    binding 18, "quadrics", READ, "array<Quadric>", "quadrics",
+        |f| f.contains(&Feature::QuadricBuffer), Some(|p| records(&p.quadrics));
     /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
     binding OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;
 }

@@ -26,6 +26,7 @@ const SOURCES: &[&str] = &[
     "shaders/light.wgsl",
     "shaders/plane.wgsl",
     "shaders/point.wgsl",
+    "shaders/quadric.wgsl",
     "shaders/sphere.wgsl",
     "shaders/surface.wgsl",
     "shaders/trace.wgsl",

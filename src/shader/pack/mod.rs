@@ -2,6 +2,7 @@
 
 mod lit;
 mod primary;
+mod quadric;
 mod range;
 mod shared;
 mod surface;
@@ -17,7 +18,7 @@ use rayon::prelude::*;
 use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, U, W_ROUNDINGS, round_up, upper_bound};
 use super::kind::SurfaceKind;
 use super::records::{
-    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Sphere,
+    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Quadric, Sphere,
     SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
 use crate::prepare::bvh::Bvh;
@@ -75,6 +76,8 @@ pub struct Packed {
     pub dark: f32,
     /// The largest coordinate of the tree's boxes, all three summed.
     pub tree_size: f32,
+    /// Quadrics, for all rays.
+    pub quadrics: Vec<Quadric>,
     /// Why the scene is the CPU's, with or without error bounds, if it is.
     pub cpu_only: Option<&'static str>,
     /// Why the error bounds cannot be relied on, if they cannot.
@@ -128,7 +131,8 @@ impl Packed {
             lit: None,
             dark: 0.0,
             tree_size: 0.0,
-            cpu_only: (!prepared.quadrics.is_empty()).then_some("quadrics are too much"),
+            quadrics: quadric::all(scene, prepared),
+            cpu_only: quadric::flat(prepared).then_some("planes written as quadrics are too much"),
             unprovable: None,
         };
         packed.pack_primary(prepared, &surfaces, screen);
@@ -143,7 +147,8 @@ impl Packed {
             let objects: Vec<u32> = planes
                 .chain(packed.polygons.iter().map(|r| r.object))
                 .collect();
-            for object in objects {
+            let curved = packed.quadrics.iter().map(|q| q.object);
+            for object in objects.into_iter().chain(curved.collect::<Vec<_>>()) {
                 packed.pack_surface(prepared, object as usize, &mut textures, 0);
             }
             for record in 0..packed.spheres.len() {
@@ -308,7 +313,7 @@ impl Packed {
 
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
-        self.planes.len() + self.polygons.len() + self.spheres.len()
+        self.planes.len() + self.polygons.len() + self.spheres.len() + self.quadrics.len()
     }
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
@@ -328,7 +333,7 @@ impl Packed {
             Some(_) => 0,
             None => self.spheres.len(),
         };
-        self.planes.len() + self.loose_polygons() + spheres
+        self.planes.len() + self.loose_polygons() + self.quadrics.len() + spheres
     }
 
     /// How many of the polygons are in no cell of the screen.

@@ -13,6 +13,7 @@ mod lanes;
 mod lights;
 mod pictures;
 mod primary;
+mod quadrics;
 mod roundings;
 mod support;
 mod surfaces;
@@ -94,6 +95,42 @@ fn rays_from_anywhere() {
     }
     for seen in wide {
         seen.judge(DECIDED, TIGHT_OFF);
+    }
+}
+
+#[test]
+fn rays_to_quadrics() {
+    let gpu = support::open();
+    let exact = [
+        "quadric_hits_from, exact ray",
+        "quadric_normal, exact ray",
+        "locate_secondary on quadrics",
+    ];
+    let off = [
+        "quadric_hits_from, ray off",
+        "quadric_normal, ray off",
+        "locate on quadrics, ray off",
+    ];
+    let measured = |errors, names| quadrics::measured(&gpu, str::to_owned, errors, MANY, names);
+    for seen in measured(RayErrors::Exact, exact) {
+        seen.judge(DECIDED, TIGHT);
+    }
+    for seen in measured(RayErrors::Off, off) {
+        seen.judge(10_000, TIGHT);
+    }
+    for name in [
+        "U",
+        "TURN",
+        "MOMENT_ROUNDINGS",
+        "GRADIENT_ROUNDINGS",
+        "QUOTIENT_GROWTH",
+    ] {
+        let without = |wgsl: &str| support::with_constant(wgsl, name, "0f");
+        let seen = [RayErrors::Exact, RayErrors::Off]
+            .map(|errors| quadrics::measured(&gpu, without, errors, MANY / 4, exact));
+        let violations: usize = seen.iter().flatten().map(BoundStatistics::violations).sum();
+        println!("{name} = 0: {violations}");
+        assert!(violations > 0, "{name} = 0 is not noticed");
     }
 }
 
@@ -238,6 +275,7 @@ fn without_a_bound() {
 /// Scenes in which bytes, edges, ties, shadows, mirrors and textures go wrong without bounds.
 const PICTURES: &[&str] = &[
     "gallery/procedural_all",
+    "gallery/quadric_chess",
     "gallery/tiles_floor",
     "hard/coincident_tiles",
     "hard/crossing_on_diagonal",
