@@ -49,7 +49,8 @@ fn bvh_begin(base: vec3f, dir: vec3f, root: u32) -> Walk {
 
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, ray: SecondaryRay) {
-    (*walk).pad = SECOND_ORDER * (ray.base_error + ray.start_error + ray.dir_error * (ray.size + BVH_SIZE))
+    let moved = ray.base_error + ray.start_error;
+    (*walk).pad = SECOND_ORDER * (moved + ray.dir_error * (ray.size + BVH_SIZE + moved))
         + BOX_ROUNDINGS * U * (ray.size + BVH_SIZE);
 }
 //#end

@@ -53,7 +53,8 @@ pub const WORTHWHILE: usize = 48;
 /// off. The slab test's roundings are relative to the distance, and covered by the slack of the test.
 const PAD: f64 = 1.0 / 524_288.0;
 
-/// Coordinates beyond this would overflow an f32 when areas are compared; such spheres and triangles stay outside the tree.
+/// Coordinates beyond this would overflow an f32 when areas are compared; such spheres and triangles stay outside the
+/// tree.
 const REACH: f64 = 1e17;
 
 /// A slab test in f64 errs by a few 2⁻⁵³ of its distances.

@@ -1,5 +1,5 @@
-//! Spheres and triangles that are made ready one by one, when a ray comes near them: for number types whose numbers take
-//! memory.
+//! Spheres and triangles that are made ready one by one, when a ray comes near them: for number types whose numbers
+//! take memory.
 //!
 //! Their trees and the screen grid, and all that is no number, is shared with a scene prepared before in another type.
 //! The floor below `world` and `prepared`, which hold an [`OnDemandShapes`] in place of their spheres and triangles.

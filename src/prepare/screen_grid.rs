@@ -1,9 +1,9 @@
-//! Which of many spheres and triangles a primary ray may hit, by the cell of the screen that it passes through. For both
-//! tracers.
+//! Which of many spheres and triangles a primary ray may hit, by the cell of the screen that it passes through. For
+//! both tracers.
 //!
-//! A sphere or triangle stands in the list of every cell that its outline's box touches. The lists run from the nearest sphere on,
-//! so that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64 and are
-//! padded by far more than that errs: they only ever say "may be hit".
+//! A sphere or triangle stands in the list of every cell that its outline's box touches. The lists run from the nearest
+//! sphere on, so that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64
+//! and are padded by far more than that errs: they only ever say "may be hit".
 
 use std::collections::HashSet;
 

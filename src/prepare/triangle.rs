@@ -2,7 +2,8 @@
 //!
 //! There may be a hundred thousand of them, so their numbers are not taken as rationals and rounded once, as those of
 //! planes are, but computed in the number type from exact ones, with its bounds (docs/NUMERICS.md, section 12). What is
-//! decided for a whole triangle is decided exactly: by f64 with bounds where these tell, by rationals where they do not.
+//! decided for a whole triangle is decided exactly: by f64 with bounds where these tell, by rationals where they do
+//! not.
 
 use std::cmp::Ordering;
 

@@ -25,8 +25,8 @@ use crate::settings::ViewParameters;
 /// Everything that a ray from anywhere can meet, and the lights.
 #[derive(Debug, Clone)]
 pub struct World<R> {
-    /// All planes, rectangles and triangles that a ray can hit, in file order, but that those of the triangles' tree come
-    /// last, in its order.
+    /// All planes, rectangles and triangles that a ray can hit, in file order, but that those of the triangles' tree
+    /// come last, in its order.
     pub planes: Vec<WorldPlane<R>>,
     /// All spheres that a ray can hit: those of the tree in its order, then the others in file order.
     pub spheres: Vec<WorldSphere<R>>,

@@ -189,8 +189,8 @@ bindings! {
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.materials));
     binding 13, "lights", READ, "array<Light>", "lights",
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.lights));
-    /// The planes, rectangles and triangles for rays from anywhere; each object of the scene knows its place here or among the
-    /// spheres.
+    /// The planes, rectangles and triangles for rays from anywhere; each object of the scene knows its place here or
+    /// among the spheres.
     binding 14, "world_planes", READ, "array<WorldPlane>", "planes for all rays",
         |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
     binding 15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",

@@ -30,9 +30,9 @@ records! {
         pad: Pad2,
     }
 
-    /// A rectangle or a triangle as primary rays see it. A hit is inside where the forms of all four sides are ≥ 0, each
-    /// up to a positive factor: of a rectangle p_i/s and (d_i − p_i)/s, where p are the coordinates on it and d its
-    /// sides. The fourth of a triangle is 1.
+    /// A rectangle or a triangle as primary rays see it. A hit is inside where the forms of all four sides are ≥ 0,
+    /// each up to a positive factor: of a rectangle p_i/s and (d_i − p_i)/s, where p are the coordinates on it and d
+    /// its sides. The fourth of a triangle is 1.
     Polygon as "Polygon" {
         /// 1/s over (X, Y, 1).
         inverse: [f32; 3],

@@ -244,8 +244,7 @@ fn what_is_not_used_is_not_there() {
         ("psphere_0_angle", &|i| asks(i, "psphere_0_angle(")),
         ("color_wheel", &|i| asks(i, "color_wheel(")),
         ("fn index_table(", &|i| {
-            let planar = !matches!(i, Ptriangle(_) | Pquadric(_));
-            matches!(i, Tiled | Texplane(_)) || planar && asks(i, "pplane_odd(")
+            matches!(i, Tiled | Texplane(_)) || matches!(i, Pplane(_)) && asks(i, "pplane_odd(")
         }),
         ("vec4u(bitcast", &|i| i == Values),
         ("fn make_pixel", &|i| {
@@ -256,7 +255,13 @@ fn what_is_not_used_is_not_there() {
         ("switch", &|i| {
             matches!(
                 i,
-                Tiled | TiledAlong | Pplane(_) | Texplane(_) | SmallPsphere(_) | WidePsphere(_)
+                Tiled
+                    | TiledAlong
+                    | Pplane(_)
+                    | Ptriangle(_)
+                    | Texplane(_)
+                    | SmallPsphere(_)
+                    | WidePsphere(_)
             )
         }),
         ("light_term", &lit),

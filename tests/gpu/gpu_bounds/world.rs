@@ -75,7 +75,7 @@ pub(crate) fn scene(rng: &mut Rng, planes: usize, spheres: usize) -> Scene {
         // A wall before the screen is none.
         point.z = point.z.min(-0.5 * size.min(1.0));
         let across = normal.cross(rng.unit());
-        if rng.chance(0.25) {
+        if rng.chance(0.15) {
             let shape = triangle(rng, normal, point);
             let surface = match i % 2 {
                 0 => Surface::Plain,
@@ -204,8 +204,11 @@ pub(crate) fn is_between(vertices: &[DVec3; 3], hit: DVec3) -> bool {
 
 /// A place in the plane of a triangle: in it, next to it, at an edge, next to a vertex.
 pub(crate) fn about_triangle(rng: &mut Rng, vertices: &[DVec3; 3]) -> DVec3 {
-    let mut share = [0, 1].map(|_| rng.uniform(-0.1, 1.1));
-    if rng.chance(0.5) {
+    let mut share = [0, 1].map(|_| rng.uniform(0.0, 1.0));
+    if share[0] + share[1] > 1.0 && rng.chance(0.8) {
+        share = share.map(|s| 1.0 - s);
+    }
+    if rng.chance(0.3) {
         share[rng.below(2)] = rng.sign() * rng.log(-9.0, -3.0);
     }
     let first = rng.below(3);
@@ -368,14 +371,20 @@ fn place(seen: &mut BoundStatistics, answer: [f32; 4], truth: DVec3) {
 }
 
 /// What the shader makes a point of an intersection with.
-pub(crate) fn inputs(world: &World) -> [(u32, &[u8]); 4] {
+pub(crate) fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     let lit = world.packed.lit.as_ref().unwrap();
     [
         (2, bytemuck::cast_slice(&lit.objects)),
         (14, bytemuck::cast_slice(&lit.planes)),
         (15, bytemuck::cast_slice(&lit.spheres)),
-        (17, bytemuck::cast_slice(&lit.third_sides)),
     ]
+}
+
+/// The same, with what the shader meets planes with.
+pub(crate) fn inputs_of_planes(world: &World) -> [(u32, &[u8]); 4] {
+    let [a, b, c] = inputs(world);
+    let lit = world.packed.lit.as_ref().unwrap();
+    [a, b, c, (17, bytemuck::cast_slice(&lit.third_sides))]
 }
 
 /// Intersections with planes and rectangles, and where they are, where they are certain.
@@ -406,7 +415,7 @@ pub(crate) fn planes(
         "{CALL}let m = plane_hits_from(world_planes[record], ray, range);
     let object = world_planes[record].object;{INTERSECTION}"
     );
-    let inputs = inputs(world);
+    let inputs = inputs_of_planes(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
     let [mut seen, mut points] = names.map(BoundStatistics::new);
     for (i, ray) in rays.iter().enumerate() {

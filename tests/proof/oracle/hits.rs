@@ -300,8 +300,8 @@ impl World<'_> {
         Ok(true)
     }
 
-    /// Whether a point of the plane of three vertices lies between them: with each two of them, in their order, it makes
-    /// a triangle that is turned as they are.
+    /// Whether a point of the plane of three vertices lies between them: with each two of them, in their order, it
+    /// makes a triangle that is turned as they are.
     fn within_triangle(&self, triangle: &Triangle, hit: &Vector) -> Result<bool, Unresolved> {
         let corners = triangle.vertices.map(Vector::from_f64);
         let turn = |a: &Vector, b: &Vector, c: &Vector| (b - a).cross(&(c - a));

@@ -9,6 +9,7 @@
 mod motifs;
 mod quadrics;
 mod strategy;
+mod triangles;
 
 use std::time::Instant;
 
