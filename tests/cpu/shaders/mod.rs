@@ -259,6 +259,7 @@ fn what_is_not_used_is_not_there() {
                     | TiledAlong
                     | Pplane(_)
                     | Ptriangle(_)
+                    | Pquadric(_)
                     | Texplane(_)
                     | SmallPsphere(_)
                     | WidePsphere(_)
