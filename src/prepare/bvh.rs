@@ -216,6 +216,33 @@ mod tests {
     }
 
     #[test]
+    fn every_triangle_is_in_one_leaf_and_in_its_box() {
+        // Every seventh is too far for f32; flat ones have boxes all the same.
+        let far = |i: usize| if i.is_multiple_of(7) { 1e18 } else { 0.0 };
+        let triangle = |i: usize| {
+            let at = DVec3::new((i % 10) as f64 + far(i), (i / 10) as f64, -5.0);
+            [at, at + DVec3::X, at + DVec3::Y * 0.5]
+        };
+        let triangles: Vec<_> = (0..300).map(triangle).collect();
+        let (tree, order) = over_triangles(&triangles).unwrap();
+        assert_eq!((tree.len, order.len()), (257, 300));
+        let mut seen = vec![0; 300];
+        for node in tree.nodes.iter().filter(|n| n.count > 0) {
+            for i in node.first..node.first + node.count {
+                let number = order[i as usize];
+                seen[number] += 1;
+                for vertex in triangles[number] {
+                    for axis in 0..3 {
+                        let (min, max) = (f64::from(node.min[axis]), f64::from(node.max[axis]));
+                        assert!(min < vertex[axis] && vertex[axis] < max);
+                    }
+                }
+            }
+        }
+        assert!((0..300).all(|i| seen[i] == usize::from(!i.is_multiple_of(7))));
+    }
+
+    #[test]
     fn few_spheres_get_no_tree() {
         let mut spheres: Vec<_> = (0..WORTHWHILE - 1)
             .map(|i| sphere(i, i as f64, 0.0, -5.0, 0.3))

@@ -263,3 +263,6 @@ pub(super) fn is_before(triangle: &Triangle, screen_tolerance: f64) -> bool {
     let mut vertices = triangle.vertices.iter();
     vertices.all(|vertex| vertex.z > screen_tolerance)
 }
+
+#[cfg(test)]
+mod tests;

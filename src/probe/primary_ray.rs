@@ -123,7 +123,8 @@ impl<'a> PrimaryRay<'a> {
     /// The hit of every object, or none.
     fn hits(&self) -> Result<Vec<Option<Hit<f64>>>, Undecided> {
         let mut hits = vec![None; self.scene.objects.len()];
-        for (index, plane) in self.prepared.planes.iter().enumerate() {
+        let planes = self.prepared.planes.iter().enumerate();
+        for (index, plane) in planes.chain(self.prepared.triangles.iter().enumerate()) {
             let inverse = plane_hits(plane, &self.ray)?;
             hits[plane.object] = inverse.map(|inverse| Hit {
                 inverse,

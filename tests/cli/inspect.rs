@@ -159,3 +159,21 @@ fn dump_shows_every_stage() {
         assert_eq!(ran.stderr, "");
     }
 }
+
+/// Where they are so many that they stand in cells of the screen, too.
+#[test]
+fn probe_lists_every_triangle_that_is_hit() {
+    let gem = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lit/gem.txt");
+    let desk = Desk::new();
+    let asked = ["probe", gem, "320", "280"];
+    let text = desk.run(&asked).ends(0).text();
+    let listed = |name: &str| {
+        let mut lines = text.lines().map(str::trim_start);
+        lines.any(|line| line.starts_with(name) && line.contains("hit   t = "))
+    };
+    let hit = text
+        .lines()
+        .find_map(|line| line.strip_prefix("hit          "));
+    let (first, _) = hit.unwrap().split_once(" at ").unwrap();
+    assert!(first.starts_with("facet") && listed(first), "{text}");
+}

@@ -4,7 +4,7 @@ use super::*;
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::prepare::Prepared;
-use crate::scene::{Camera, Material, Object, Surface};
+use crate::scene::{self, Material, Object, Surface, Triangle};
 use crate::settings::Settings;
 
 /// Numbers in [0, 1), the same in every run.
@@ -32,7 +32,7 @@ fn scene(pixeldim: [u32; 2], balls: Vec<(DVec3, f64)>) -> Scene {
         surface: Surface::Plain,
     };
     Scene {
-        camera: Camera {
+        camera: scene::Camera {
             name: "c".into(),
             pixeldim,
             worlddim: DVec2::new(4.0, 3.0),
@@ -57,6 +57,23 @@ fn balls(numbers: &mut Numbers, count: usize) -> Vec<(DVec3, f64)> {
     (0..count).map(&mut ball).collect()
 }
 
+/// Triangles before, beside, around and behind the viewpoint, from specks to more than the screen, in place of every
+/// other ball, or of every one.
+fn with_triangles(numbers: &mut Numbers, mut scene: Scene, every: usize) -> Scene {
+    for object in scene.objects.iter_mut().step_by(every) {
+        let scale = 10_f64.powf(numbers.between(-2.0, 2.0));
+        let far = 10_f64.powf(numbers.between(-1.0, 2.0));
+        let mut near = |scale: f64| DVec3::from([0; 3].map(|_| scale * numbers.between(-1.0, 1.0)));
+        let middle = DVec3::new(1.5, 1.25, 2.0 - 0.8 * far) + near(far);
+        object.shape = Shape::Triangle(Triangle {
+            vertices: [0; 3].map(|_| middle + near(scale)),
+            normal: None,
+            point: None,
+        });
+    }
+    scene
+}
+
 /// The objects seen in the pixels, by their cells' lists and by asking all.
 fn both(scene: &Scene, prepared: &Prepared<f64>, margin: f64) -> [Vec<Option<usize>>; 2] {
     let pixels = scene.camera.pixeldim;
@@ -67,8 +84,22 @@ fn both(scene: &Scene, prepared: &Prepared<f64>, margin: f64) -> [Vec<Option<usi
         }
         Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => None,
     };
+    let view = ViewParameters::from(0.0);
+    let triangle = |(index, object): (usize, &Object)| match object.shape {
+        Shape::Triangle(triangle) => {
+            Plane::of_triangle(&scene.camera, &prepared.camera, view, index, &triangle)
+        }
+        Shape::Plane { .. } | Shape::Sphere { .. } | Shape::Quadric(_) => None,
+    };
     let all = Prepared {
         screen_grid: None,
+        triangles: vec![],
+        planes: scene
+            .objects
+            .iter()
+            .enumerate()
+            .filter_map(triangle)
+            .collect(),
         spheres: scene
             .objects
             .iter()
@@ -110,6 +141,10 @@ fn the_lists_miss_nothing() {
         let pixels = [[61, 45], [1, 40], [40, 1], [16, 8]][round % 4];
         let count = [40, 200, 700][round % 3];
         let scene = scene(pixels, balls(&mut numbers, count));
+        let scene = match round % 5 {
+            every @ 1..3 => with_triangles(&mut numbers, scene, every),
+            _ => scene,
+        };
         let samples = 1 + 15 * (round as u32 % 2);
         let view = Settings {
             samples,
@@ -148,6 +183,27 @@ fn what_a_list_lacks_is_noticed() {
     prepared.screen_grid = Some(screen_grid.into());
     let [listed, all] = both(&scene, &prepared, 0.0);
     assert_ne!(listed, all);
+}
+
+#[test]
+fn boxes_of_triangles_end_at_their_vertices() {
+    let scene = scene([4001, 3001], vec![]);
+    let camera = Camera::<f64>::new(&scene.camera);
+    let outlines = Outlines::new(&scene, &camera, ViewParameters::from(0.0));
+    // 2 before the screen's plane rays are at 1.5, 1.25; at z = −2 they are twice as far from there as on the screen.
+    let vertices = [[0.5, 0.25, -2.0], [2.5, 0.25, -2.0], [0.5, 2.25, -2.0]].map(DVec3::from);
+    let (max_inverse, covered) = outlines.of_triangle(&vertices).unwrap();
+    assert_eq!(covered, [[1000, 2000], [750, 1750]]);
+    let units = f64::from(max_inverse) * 2.0;
+    assert!(units > 1.0 && units < 1.000_002, "{units}");
+    // Around the viewpoint it is seen anywhere, behind it nowhere.
+    let around = [[0.5, 0.25, -2.0], [2.5, 0.25, 3.0], [0.5, 2.25, -2.0]].map(DVec3::from);
+    assert_eq!(
+        outlines.of_triangle(&around).unwrap().1,
+        [[0, 4000], [0, 3000]]
+    );
+    let behind = around.map(|v| v + DVec3::new(0.0, 0.0, 5.0));
+    assert_eq!(outlines.of_triangle(&behind), None);
 }
 
 #[test]
