@@ -87,15 +87,18 @@ fn quadric_root(quadric: Quadric, ray: QuadricRay, t: f32, error: f32) -> Root {
     let ahead = t - ray.start;
     let ahead_error = error + ray.start_error;
     let position = ray.base + t * ray.dir;
-    let margins = min(position - quadric.lower, quadric.upper - position);
-    let margin = min(min(margins.x, margins.y), margins.z);
-    let margin_error = SECOND_ORDER * (error + ray.base_error + abs(t) * ray.dir_error) + quadric.border_error
-        + POSITION_ROUNDINGS * U * (ray.size + abs(t));
+    let above = position - quadric.lower;
+    let below = quadric.upper - position;
+    let position_error = SECOND_ORDER * (error + ray.base_error + abs(t) * ray.dir_error)
+        + (POSITION_ROUNDINGS + BORDER_ROUNDINGS) * U * (ray.size + abs(t));
+    let above_error = position_error + BORDER_ROUNDINGS * U * abs(quadric.lower);
+    let below_error = position_error + BORDER_ROUNDINGS * U * abs(quadric.upper);
     var root: Root;
     root.t = t;
     root.error = error;
-    root.counts = (ahead > ahead_error) & (margin > margin_error) & (abs(t) < FARTHEST);
-    root.out = (ahead < -ahead_error) | (margin < -margin_error);
+    root.counts = (ahead > ahead_error) & all(above > above_error) & all(below > below_error)
+        & (abs(t) < FARTHEST);
+    root.out = (ahead < -ahead_error) | any(above < -above_error) | any(below < -below_error);
     return root;
 }
 //#end

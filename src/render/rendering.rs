@@ -79,8 +79,7 @@ impl Rendering<'_> {
         if found > allowed {
             return Err(GpuError::TooMany { found, allowed }.into());
         }
-        let without_bounds = !self.settings.has_gpu_bounds() && packed.cpu_only.is_none();
-        if let (false, Some(reason)) = (without_bounds, packed.unprovable) {
+        if let (true, Some(reason)) = (self.settings.has_gpu_bounds(), packed.unprovable) {
             let fallback = format!("{reason} for f32 with error bounds, so the CPU renders");
             return Ok(Done {
                 fallback: Some(fallback),

@@ -105,6 +105,8 @@ named! {
     GRADIENT_ROUNDINGS = 8.0, at least 6.5;
     /// Roundings of the terms of a quadric's discriminant and of the quadratic's coefficients.
     MOMENT_ROUNDINGS = 16.0, at least 12.5;
+    /// Roundings of a border, and of its difference from a position.
+    BORDER_ROUNDINGS = 2.0, at least 1.5;
     /// A quotient is known where its divisor is more than this many times the divisor's bound.
     QUOTIENT_FROM = 8.0;
     /// 1/(1 − 1/`QUOTIENT_FROM`), and roundings.

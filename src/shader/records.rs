@@ -387,10 +387,6 @@ records! {
         upper: [f32; 3],
         /// Bit i: light i lies on the surface.
         lights_on_surface: u32,
-        /// Bound of the errors of the borders, and of their differences from positions.
-        border_error: f32,
-        /// Nothing.
-        pad: Pad3,
     }
 }
 

@@ -78,8 +78,6 @@ pub struct Packed {
     pub tree_size: f32,
     /// Quadrics, for all rays.
     pub quadrics: Vec<Quadric>,
-    /// Why the scene is the CPU's, with or without error bounds, if it is.
-    pub cpu_only: Option<&'static str>,
     /// Why the error bounds cannot be relied on, if they cannot.
     pub unprovable: Option<&'static str>,
 }
@@ -132,7 +130,6 @@ impl Packed {
             dark: 0.0,
             tree_size: 0.0,
             quadrics: quadric::all(scene, prepared),
-            cpu_only: quadric::flat(prepared).then_some("planes written as quadrics are too much"),
             unprovable: None,
         };
         packed.pack_primary(prepared, &surfaces, screen);
@@ -164,7 +161,7 @@ impl Packed {
             .map(|world| Lit::new(prepared, world, &packed));
         packed.dark = packed.darkness();
         packed.tree_size = round_up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
-        packed.unprovable = packed.cpu_only.or_else(|| packed.doubtful_numbers());
+        packed.unprovable = packed.doubtful_numbers();
         packed
     }
 

@@ -5,24 +5,16 @@ use crate::prepare::quadric::{self, Local};
 use crate::prepare::{self, Prepared};
 use crate::real::{Bounded, Real as _, V3};
 use crate::scene::Scene;
-use crate::shader::bounds::{U, round_up, upper_bound};
+use crate::shader::bounds::{round_up, upper_bound};
 use crate::shader::records::Quadric;
 
 /// Stands for no border: beyond every position that a ray is followed to.
 const NO_BORDER: f32 = (1_u64 << 60) as f32;
 
-/// Whether a quadric is a plane, which `shaders/quadric.wgsl` has no answer to.
-pub(super) fn flat(scene: &Prepared<Bounded>) -> bool {
-    scene
-        .quadrics
-        .iter()
-        .any(|quadric| quadric.square.is_none())
-}
-
 /// The records of a scene's quadrics.
 pub(super) fn all(scene: &Scene, prepared: &Prepared<Bounded>) -> Vec<Quadric> {
-    let curved = prepared.quadrics.iter().filter(|q| q.square.is_some());
-    curved
+    let quadrics = prepared.quadrics.iter();
+    quadrics
         .map(|quadric| {
             let group = prepared.groups[quadric.object];
             let local = quadric::local(scene, prepared.camera.scale, quadric.object);
@@ -33,16 +25,17 @@ pub(super) fn all(scene: &Scene, prepared: &Prepared<Bounded>) -> Vec<Quadric> {
 
 fn record(quadric: &prepare::Quadric<Bounded>, local: &Local, group: u32) -> Quadric {
     let f32s = |values: [Bounded; 3]| values.map(|v| v.value as f32);
-    let [slope, ..] = [local.slope];
-    let slope = V3::new(slope[0], slope[1], slope[2]);
+    let [x, y, z] = local.slope;
+    let slope = V3::new(x, y, z);
+    let center = local.center.map(|c| Bounded::exact(f64::from(c)));
     let border = |side: usize, none: f32| {
-        let of = |axis: usize| quadric.borders[axis][side].map_or(none, |b| b.value as f32);
+        let near = |b: &Bounded| b.value.abs() < f64::from(NO_BORDER);
+        let of = |axis: usize| {
+            let border = quadric.borders[axis][side].filter(near);
+            border.map_or(none, |b| b.value as f32)
+        };
         [of(0), of(1), of(2)]
     };
-    let largest = quadric.borders.iter().flatten().flatten();
-    let largest = largest.map(|b| upper_bound(*b)).fold(0.0, f64::max);
-    // The rounding to f32, and that of the difference.
-    let border_error = round_up(1.5 * U * largest);
     Quadric {
         center: local.center,
         object: quadric.object as u32,
@@ -57,15 +50,9 @@ fn record(quadric: &prepare::Quadric<Bounded>, local: &Local, group: u32) -> Qua
         slope: [slope.x, slope.y, slope.z].map(|v| v.value as f32),
         slope_size: size(slope),
         lower: border(0, -NO_BORDER),
-        size: size(V3::new(
-            Bounded::exact(f64::from(local.center[0])),
-            Bounded::exact(f64::from(local.center[1])),
-            Bounded::exact(f64::from(local.center[2])),
-        )),
+        size: size(V3::new(center[0], center[1], center[2])),
         upper: border(1, NO_BORDER),
         lights_on_surface: bits(&quadric.lights_on_surface),
-        border_error,
-        pad: Default::default(),
     }
 }
 
