@@ -1,7 +1,7 @@
 // Quadrics, for all rays. Referee: src/cpu/quadric.rs.
 //
-// About a point C next to a quadric its left side is p·Ap + 2 v·p + k, p = H − C. As of a sphere, a line is known by its
-// direction D and the perpendicular p from C to it. With the moment m = p × D its discriminant is
+// About a point C next to a quadric its left side is p·Ap + 2 v·p + k, p = H − C. As of a sphere, a line is known by
+// its direction D and the perpendicular p from C to it. With the moment m = p × D its discriminant is
 //
 //     −m·adj(A)m + 2 m·(AD × v) + (v·D)² − k D·AD,
 //

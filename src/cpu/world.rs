@@ -24,8 +24,8 @@ pub struct Range<R> {
     pub skip: Option<u32>,
     /// A shadow ray's light: hits count only before it.
     pub light: Option<Toward<R>>,
-    /// Whether the ray goes on through what it meets: from there all of a quadric counts that lies ahead, of the one that
-    /// the ray left too.
+    /// Whether the ray goes on through what it meets: from there all of a quadric counts that lies ahead, of the one
+    /// that the ray left too.
     pub through: bool,
 }
 

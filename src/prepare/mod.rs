@@ -16,6 +16,7 @@ pub mod extent;
 pub mod groups;
 pub mod hidden;
 pub mod index;
+pub mod local_quadric;
 pub mod material;
 pub mod on_demand;
 pub mod plane;

@@ -350,8 +350,8 @@ records! {
         pad: Pad3,
     }
 
-    /// A quadric; positions are from the viewpoint. About its `center` C, which is a point near it, the left side of its
-    /// equation is p·Ap + 2·slope·p + constant, p = H − C.
+    /// A quadric; positions are from the viewpoint. About its `center` C, which is a point near it, the left side of
+    /// its equation is p·Ap + 2·slope·p + constant, p = H − C.
     Quadric as "Quadric" {
         /// From the viewpoint, exactly.
         center: [f32; 3],

@@ -1,7 +1,7 @@
 //! Quadrics for all rays: their equations about a point near them, which f32 has exactly.
 
 use super::lit::{bits, size};
-use crate::prepare::quadric::{self, Local};
+use crate::prepare::local_quadric::{Local, local};
 use crate::prepare::{self, Prepared};
 use crate::real::{Bounded, Real as _, V3};
 use crate::scene::Scene;
@@ -17,8 +17,8 @@ pub(super) fn all(scene: &Scene, prepared: &Prepared<Bounded>) -> Vec<Quadric> {
     quadrics
         .map(|quadric| {
             let group = prepared.groups[quadric.object];
-            let local = quadric::local(scene, prepared.camera.scale, quadric.object);
-            record(quadric, &local, group)
+            let about = local(scene, prepared.camera.scale, quadric.object);
+            record(quadric, &about, group)
         })
         .collect()
 }

@@ -1,8 +1,8 @@
 //! Where a line meets the objects (docs/SCENE.md, "Hits"), nearest first: all that closest hits, shadows and rays
 //! straight through ask for.
 //!
-//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface, but of the
-//! object that it left last. Parameters, not distances: the direction has any length.
+//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface, but of
+//! the object that it left last. Parameters, not distances: the direction has any length.
 
 use std::cmp::Ordering;
 
@@ -34,7 +34,8 @@ impl Hit {
 }
 
 impl World<'_> {
-    /// The hits of a line that left from the object `last`. With `end`, which is base + direction, only those before it.
+    /// The hits of a line that left from the object `last`. With `end`, which is base + direction, only those before
+    /// it.
     pub(crate) fn hits(
         &self,
         base: &Vector,
