@@ -62,7 +62,12 @@ fn polygon_hits(polygon: Polygon, ray: Ray) -> PrimaryIntersection {
 
 //#insert struct WorldPlane
 //#if triangle_anywhere
-//#insert struct ThirdSide
+
+// The third side of the triangle whose record says so in `bounded`: within, row·P is at least the fourth component.
+fn third_side(bounded: u32) -> vec4f {
+    let side = objects[THIRD_SIDES + bounded - 2u];
+    return bitcast<vec4f>(vec4u(side.material, side.kind, side.group, side.place));
+}
 //#end
 
 // The plane as a ray from anywhere meets it.
@@ -107,8 +112,8 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
         var margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
 //#if triangle_anywhere
         if plane.bounded > 1u {
-            let third = third_sides[plane.bounded - 2u];
-            margin = min(margin, dot(third.row, position) - third.origin);
+            let third = third_side(plane.bounded);
+            margin = min(margin, dot(third.xyz, position) - third.w);
         }
 //#end
         let margin_error = SECOND_ORDER * position_error + plane.sides_error
@@ -130,8 +135,8 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
         intersection.hit &= all(p >= vec2f(0.0)) & all(p <= plane.lengths);
 //#if triangle_anywhere
         if plane.bounded > 1u {
-            let third = third_sides[plane.bounded - 2u];
-            intersection.hit &= dot(third.row, position) >= third.origin;
+            let third = third_side(plane.bounded);
+            intersection.hit &= dot(third.xyz, position) >= third.w;
         }
 //#end
     }

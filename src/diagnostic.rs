@@ -132,12 +132,8 @@ impl Diagnostics {
             .into_iter()
             .map(|diagnostic| Report::new(text, &places, diagnostic))
             .collect();
-        let mut name = String::new();
-        for character in file.chars() {
-            name.push(visible(character));
-        }
         Self {
-            file: name,
+            file: visible_text(file),
             reports,
             total,
         }
@@ -357,6 +353,11 @@ fn visible(character: char) -> char {
     } else {
         character
     }
+}
+
+/// A text as it may be printed in a line: with nothing that moves the cursor or turns the direction of writing.
+pub fn visible_text(text: &str) -> String {
+    text.chars().map(visible).collect()
 }
 
 /// A token for a message: in backticks, cut when long, with control characters escaped.

@@ -23,10 +23,12 @@ pub mod certify;
 pub mod cpu;
 pub mod diagnostic;
 pub mod edit;
+pub mod files;
 pub mod frame;
 pub mod gpu;
 pub mod image;
 pub mod jitter;
+mod ppm;
 pub mod prepare;
 #[cfg(feature = "preview")]
 pub mod preview;

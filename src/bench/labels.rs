@@ -1,31 +1,35 @@
 //! Where the labels of a plot's points stand, so that none covers another.
 
-/// Half a marker.
-pub(super) const MARK: f64 = 5.0;
 /// Half the height of a line of text.
 pub(super) const LINE: f64 = 7.0;
 /// About the width of a character.
 const LETTER: f64 = 6.4;
 
+/// About the width of a text.
+pub(super) fn text_width(text: &str) -> f64 {
+    LETTER * text.chars().count() as f64
+}
+
 /// Where the labels of points stand (left, top, right, bottom): the first place around its point where a label covers
 /// neither another one nor a marker, or else one that covers no label.
-pub(super) fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -> Vec<[f64; 4]> {
-    let marks: Vec<[f64; 4]> = places
-        .iter()
-        .map(|(x, y)| {
-            [
-                x - MARK - 1.0,
-                y - MARK - 1.0,
-                x + MARK + 1.0,
-                y + MARK + 1.0,
-            ]
-        })
-        .collect();
+///
+/// `sizes` are half those of the markers.
+pub(super) fn labels(
+    texts: &[String],
+    places: &[(f64, f64)],
+    sizes: &[f64],
+    frame: [f64; 4],
+) -> Vec<[f64; 4]> {
+    let mark = |((x, y), size): (&(f64, f64), &f64)| {
+        let half = size + 1.0;
+        [x - half, y - half, x + half, y + half]
+    };
+    let marks: Vec<[f64; 4]> = places.iter().zip(sizes).map(mark).collect();
     let overlap =
         |a: &[f64; 4], b: &[f64; 4]| a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
     let mut taken: Vec<[f64; 4]> = Vec::new();
-    for (text, &(x, y)) in texts.iter().zip(places) {
-        let width = LETTER * text.chars().count() as f64 + 4.0;
+    for ((text, &(x, y)), size) in texts.iter().zip(places).zip(sizes) {
+        let width = text_width(text) + 4.0;
         let label = |dx: f64, dy: f64| {
             // Kept inside the panel, where there is room for it.
             let left = (x + dx).min(frame[2] - width - 1.0).max(frame[0] + 1.0);
@@ -37,15 +41,15 @@ pub(super) fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -
         let around = (0..40).flat_map(|ring| {
             let far = f64::from(ring) * 2.0 * LINE;
             // Beside the point and a line up or down: whiskers and the front run level with it.
-            let (right, left) = (MARK, -MARK - width);
+            let (right, left) = (*size, -size - width);
             let near = LINE + 4.0 + far;
             [
                 (right, -near),
                 (right, near),
                 (left, -near),
                 (left, near),
-                (-width / 2.0, -near - MARK),
-                (-width / 2.0, near + MARK),
+                (-width / 2.0, -near - size),
+                (-width / 2.0, near + size),
             ]
         });
         let candidates: Vec<[f64; 4]> = around.map(|(dx, dy)| label(dx, dy)).collect();
@@ -64,6 +68,7 @@ pub(super) fn labels(texts: &[String], places: &[(f64, f64)], frame: [f64; 4]) -
 
 #[cfg(test)]
 mod tests {
+    use super::super::markers::MARK;
     use super::super::ways::Way;
     use super::*;
 
@@ -86,7 +91,7 @@ mod tests {
                 (11.0, 20.0),
             ],
         ] {
-            let labels = labels(&texts, &places, frame);
+            let labels = labels(&texts, &places, &[MARK; 6], frame);
             for (i, a) in labels.iter().enumerate() {
                 assert!(
                     a[0] >= 0.0 && a[2] <= 400.0 && a[1] >= 0.0 && a[3] <= 300.0,

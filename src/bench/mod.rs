@@ -17,6 +17,7 @@ pub mod error;
 pub mod first_hit;
 mod labels;
 pub mod machine;
+mod markers;
 pub mod measure;
 pub mod plot;
 pub mod scenes;

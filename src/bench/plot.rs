@@ -1,7 +1,8 @@
 //! The report as a picture: time across, error up, a panel a scene, a point a way, and the front that nothing beats.
 //! Told apart by shape and fill, so that black and white will do.
 
-use super::labels::{LINE, MARK, labels};
+use super::labels::{LINE, labels, text_width};
+use super::markers::{MARK, mark, nested};
 use super::statistics::pareto;
 use super::svg::{Anchor, Svg};
 use super::table::short;
@@ -12,9 +13,12 @@ use super::{Report, SceneReport};
 const PANEL: (f64, f64) = (470.0, 370.0);
 /// Around the plotted rectangle: left, top, right, bottom.
 const MARGIN: [f64; 4] = [78.0, 34.0, 14.0, 50.0];
-/// Above and below all panels.
-const HEAD: f64 = 56.0;
-const FOOT: f64 = 58.0;
+/// Above and below all panels, without the lines of text that stand there; and a line of it.
+const HEAD: f64 = 28.0;
+const FOOT: f64 = 26.0;
+const CAPTION: f64 = 15.0;
+/// Left and right of captions.
+const EDGE: f64 = 14.0;
 /// Height of the strip for pictures without a wrong pixel.
 const FLOOR: f64 = 64.0;
 
@@ -29,8 +33,7 @@ pub fn plot(report: &Report) -> String {
     };
     let rows = count.div_ceil(columns).max(1);
     let width = (columns as f64 * PANEL.0).max(620.0);
-    let height = HEAD + rows as f64 * PANEL.1 + FOOT;
-    let mut svg = Svg::default();
+    let room = width - 2.0 * EDGE;
     let machine = &report.machine;
     let gpu = match (&machine.adapter, &machine.driver) {
         (Some(adapter), Some(driver)) => format!("{adapter}, {driver}"),
@@ -38,38 +41,78 @@ pub fn plot(report: &Report) -> String {
         (None, _) => "no GPU".to_owned(),
     };
     let cpu = format!("CPU: {}, {} threads", machine.cpu, machine.threads);
-    svg.text(
-        (14.0, 22.0),
-        Anchor::Start,
-        "font-size='15' font-weight='bold'",
-        "Error against time",
-    );
-    svg.text((14.0, 39.0), Anchor::Start, "", &format!("GPU: {gpu}"));
-    svg.text((14.0, 53.0), Anchor::Start, "", &cpu);
-    for (i, scene) in report.scenes.iter().enumerate() {
-        let origin = (
-            (i % columns) as f64 * PANEL.0,
-            HEAD + (i / columns) as f64 * PANEL.1,
-        );
-        panel(&mut svg, origin, scene);
-    }
-    let foot = height - FOOT + 14.0;
-    svg.line(&[(14.0, foot - 4.0), (44.0, foot - 4.0)], FRONT);
-    let front = "the front: no way is both faster and nearer to the truth";
-    svg.text((50.0, foot), Anchor::Start, "", front);
+    let mut head = wrap(&format!("GPU: {gpu}"), room);
+    head.extend(wrap(&cpu, room));
     let runs = match report.repeat {
         1 => "one run".to_owned(),
         n => format!("the median of {n} runs, whiskers the fastest and the slowest"),
     };
     let whiskers = format!("{runs}; a frame is from the scene to its bytes, compiling included");
-    svg.text((14.0, foot + 16.0), Anchor::Start, "", &whiskers);
     let left_out: Vec<String> = report.scenes.iter().flat_map(left_out).collect();
     let last = match left_out.as_slice() {
         [] => report.software.clone(),
         some => format!("{}; not available: {}", report.software, some.join(", ")),
     };
-    svg.text((14.0, foot + 32.0), Anchor::Start, "", &last);
+    let mut foot = wrap(&whiskers, room);
+    foot.extend(wrap(&last, room));
+    let top = HEAD + CAPTION * head.len() as f64;
+    let bottom = top + rows as f64 * PANEL.1;
+    let height = bottom + FOOT + CAPTION * foot.len() as f64;
+
+    let mut svg = Svg::default();
+    let title = "font-size='15' font-weight='bold'";
+    svg.text((EDGE, 22.0), Anchor::Start, title, "Error against time");
+    captions(&mut svg, HEAD + 11.0, &head);
+    for (i, scene) in report.scenes.iter().enumerate() {
+        let origin = (
+            (i % columns) as f64 * PANEL.0,
+            top + (i / columns) as f64 * PANEL.1,
+        );
+        panel(&mut svg, origin, scene);
+    }
+    let front = bottom + 14.0;
+    svg.line(&[(EDGE, front - 4.0), (EDGE + 30.0, front - 4.0)], FRONT);
+    let meaning = "the front: no way is both faster and nearer to the truth";
+    svg.text((EDGE + 36.0, front), Anchor::Start, "", meaning);
+    captions(&mut svg, front + CAPTION, &foot);
     svg.finish(width, height, "Error against time")
+}
+
+/// Lines of text, the first at this height.
+fn captions(svg: &mut Svg, y: f64, lines: &[String]) {
+    for (line, text) in lines.iter().enumerate() {
+        let y = y + CAPTION * line as f64;
+        svg.text((EDGE, y), Anchor::Start, "", text);
+    }
+}
+
+/// A text in lines that are no wider than `room`; of a word that is wider alone, a path perhaps, its end.
+fn wrap(text: &str, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        let word = &end_of(word, room);
+        match lines.last_mut() {
+            Some(line) if text_width(line) + text_width(word) + text_width(" ") <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.clone()),
+        }
+    }
+    lines
+}
+
+/// The end of a text, if all of it is wider than `room`.
+fn end_of(text: &str, room: f64) -> String {
+    if text_width(text) <= room {
+        return text.to_owned();
+    }
+    let mut end: Vec<char> = text.chars().rev().collect();
+    while text_width(&end.iter().collect::<String>()) > room - text_width("…")
+        && end.pop().is_some()
+    {}
+    end.push('…');
+    end.iter().rev().collect()
 }
 
 const FRONT: &str = "stroke='#555' stroke-width='1.5' stroke-dasharray='6 3'";
@@ -175,7 +218,8 @@ fn panel(svg: &mut Svg, origin: (f64, f64), scene: &SceneReport) {
         stairs.push((right, places[*last].1));
         svg.line(&stairs, FRONT);
     }
-    for (point, &(x, y)) in points.iter().zip(&places) {
+    let sizes = nested(&places);
+    for (point, &(_, y)) in points.iter().zip(&places) {
         let [from, to] = point.spread.map(|ms| axes.x(ms));
         svg.line(&[(from, y), (to, y)], "stroke='black' stroke-width='0.8'");
         for end in [from, to] {
@@ -184,7 +228,11 @@ fn panel(svg: &mut Svg, origin: (f64, f64), scene: &SceneReport) {
                 "stroke='black' stroke-width='0.8'",
             );
         }
-        mark(svg, point.way, (x, y));
+    }
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| sizes[b].total_cmp(&sizes[a]));
+    for i in order {
+        mark(svg, points[i].way, places[i], sizes[i]);
     }
     let texts: Vec<String> = points
         .iter()
@@ -192,7 +240,7 @@ fn panel(svg: &mut Svg, origin: (f64, f64), scene: &SceneReport) {
         .collect();
     for ((text, label), &(x, y)) in texts
         .iter()
-        .zip(labels(&texts, &places, axes.frame))
+        .zip(labels(&texts, &places, &sizes, axes.frame))
         .zip(&places)
     {
         let [left, top, right, bottom] = label;
@@ -215,7 +263,10 @@ fn panel(svg: &mut Svg, origin: (f64, f64), scene: &SceneReport) {
 fn draw_axes(svg: &mut Svg, axes: &Axes, scene: &SceneReport) {
     let [left, top, right, bottom] = axes.frame;
     let middle = (left + right) / 2.0;
-    let title = format!("{}, {}×{}", scene.scene, scene.width, scene.height);
+    let size = format!(", {}×{}", scene.width, scene.height);
+    // Bold letters are wider. A path that is too long keeps its end, which is the file's name.
+    let room = (PANEL.0 - 2.0 * EDGE) / 1.15 - text_width(&size);
+    let title = end_of(&scene.scene, room) + &size;
     svg.text(
         (middle, top - 10.0),
         Anchor::Middle,
@@ -267,40 +318,6 @@ fn draw_axes(svg: &mut Svg, axes: &Axes, scene: &SceneReport) {
     svg.text((x, y), Anchor::Middle, &turned, "wrong pixels (log)");
 }
 
-/// A way's marker.
-fn mark(svg: &mut Svg, way: Way, (x, y): (f64, f64)) {
-    let black = "fill='black' stroke='black' stroke-width='1.4'";
-    let white = "fill='white' stroke='black' stroke-width='1.4'";
-    let square = [x - MARK, y - MARK, 2.0 * MARK, 2.0 * MARK];
-    let m = MARK;
-    let circle = format!(
-        "M{:.1},{y:.1} a{m},{m} 0 1 0 {:.1},0 a{m},{m} 0 1 0 {:.1},0 z",
-        x - m,
-        2.0 * m,
-        -2.0 * m
-    );
-    match way {
-        Way::GpuCertified => svg.rectangle(square, black),
-        Way::GpuFast => svg.rectangle(square, white),
-        Way::CpuCertified => svg.path(&circle, black),
-        Way::CpuPlain => svg.path(&circle, white),
-        Way::F32Quadratic => {
-            let triangle = format!(
-                "M{x:.1},{:.1} l{m:.1},{:.1} h{:.1} z",
-                y - 1.2 * m,
-                2.2 * m,
-                -2.0 * m
-            );
-            svg.path(&triangle, white);
-        }
-        Way::F32Naive => {
-            let (a, b, c, d) = (x - m, x + m, y - m, y + m);
-            let cross = format!("M{a:.1},{c:.1} L{b:.1},{d:.1} M{a:.1},{d:.1} L{b:.1},{c:.1}");
-            svg.path(&cross, "fill='none' stroke='black' stroke-width='2'");
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::svg::tests::well_formed;
@@ -340,5 +357,37 @@ mod tests {
         assert!(axes.x(1.0) < axes.x(2.0));
         // One pixel of 1,200 is above the strip.
         assert!(axes.y(100.0 / 1200.0) < axes.frame[3] - FLOOR);
+    }
+
+    /// Of one panel the picture is narrow, and names of machines are long.
+    #[test]
+    fn no_caption_leaves_the_picture() {
+        let mut report = report();
+        report.machine.adapter = Some("A card with a name that goes on ".repeat(5));
+        report.scenes[0].scene = format!("{}room.txt", "folder/".repeat(30));
+        let text = plot(&report);
+        let number = |of: &str, line: &str| -> f64 {
+            let (_, rest) = line.split_once(of).unwrap();
+            rest.split('\'').nth(1).unwrap().parse().unwrap()
+        };
+        let width = number(
+            "<svg",
+            text.replace("xmlns='http://www.w3.org/2000/svg'", "")
+                .as_str(),
+        );
+        let mut captions = 0;
+        for line in text.lines().filter(|line| line.starts_with("<text")) {
+            let (_, told) = line.split_once('>').unwrap();
+            let told = told.trim_end_matches("</text>");
+            if line.contains("text-anchor='start'") && number("<text x", line) == EDGE {
+                captions += 1;
+                assert!(EDGE + text_width(told) <= width, "{told}");
+            }
+        }
+        assert!(captions > 6, "{captions}");
+        assert!(
+            text.contains("folder/room.txt, 40×30") && text.contains(">…"),
+            "{text}"
+        );
     }
 }

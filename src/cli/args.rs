@@ -13,10 +13,10 @@ use plumb::scene::Scene;
 use plumb::settings::Supersampling;
 
 use super::cache;
-use super::values::{Rows, path, rows, size, threads, tolerance};
+use super::values::{Rows, path, rows, size, threads, tolerance, whole};
 
 /// More samples than this show nothing more, and take hours.
-const MOST_SAMPLES: i64 = 65_536;
+const MOST_SAMPLES: u32 = 65_536;
 /// The offsets of this many samples are held in memory at a time, for a row: a quarter of a gigabyte a thread.
 const MOST_COURSE_SAMPLES: u64 = 1 << 24;
 
@@ -34,7 +34,7 @@ pub(crate) struct PictureOptions {
         long,
         value_name = "N",
         default_value_t = 1,
-        value_parser = clap::value_parser!(u32).range(1..=MOST_SAMPLES),
+        value_parser = whole(1..=MOST_SAMPLES),
         long_help = "\
 Samples a pixel, 1 to 65536. 1 is a ray through its middle; N are N rays spread over it, and the mean of their colours \
 is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures. Where a floor or wall runs \
@@ -69,7 +69,7 @@ lights."
         long,
         value_name = "N",
         default_value_t = Limits::default().max_rays,
-        value_parser = clap::value_parser!(u32).range(1..),
+        value_parser = whole(1..=u32::MAX),
         long_help = "\
 A sample that needs more rays than N is an error that names its pixel, and no picture is made: where something is a \
 mirror and transparent too, every ray that meets it becomes two, and such a tree can have millions. Shadow rays do not \
@@ -165,10 +165,10 @@ written beside and renamed when it is whole; devices, pipes and links are writte
 What is asked of the bytes.
 
 certified: every byte is the one that the scene means in exact arithmetic, the same from every GPU, driver and CPU. \
-The GPU tells with each pixel whether it is sure of it; those that it is not sure of, well under one in a hundred as a \
-rule, are decided on the CPU, in the end exactly. The GPU is tested before it is trusted, and some of the pixels that \
-it is \
-sure of are computed again. EXR holds the f32 nearest each exact value; all of it is computed on the CPU.
+The GPU tells with each pixel whether it is sure of it; those that it is not sure of are decided on the CPU, in \
+the end exactly: of the scenes that come with plumb 0.1 to 2 % without lights, with lights mostly 0.2 to 5 %, and up \
+to 20 % where mirrors show mirrors. The GPU is tested before it is trusted, and some of the pixels that it is sure of \
+are computed again. EXR holds the f32 nearest each exact value; all of it is computed on the CPU.
 
 fast: the GPU's f32 as it comes. A few bytes in a hundred thousand differ by one, which ones depends on the driver. \
 With --backend cpu there is no difference."
@@ -193,13 +193,20 @@ A second picture of the same size, .png or .ppm, that shows what decided each pi
     )]
     pub(crate) verdicts: Option<PathBuf>,
     /// CPU threads; all cores without
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = threads,
+        long_help = "\
+Threads that plumb computes with on the CPU; without it as many as there are cores. A software driver, such as \
+lavapipe or SwiftShader, computes on the CPU with threads of its own, which this does not bound: --backend cpu does without it."
+    )]
     pub(crate) threads: Option<usize>,
     /// Rows of a band, the piece in which a picture is rendered and written; it changes no byte
     #[arg(
         long,
         value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..),
+        value_parser = whole(1..=u32::MAX),
         long_help = "\
 Rows of a band, the piece in which a picture is rendered and written. Without it bands are as high as takes a moment. \
 It changes no byte, only memory and time; a band has fewer rows where so many would not fit."
@@ -245,6 +252,11 @@ impl RenderOptions {
         if self.strict && self.precision == PrecisionName::Fast {
             bail!(
                 "--strict asks that every byte is proven, and --precision fast proves none: leave one of them out"
+            );
+        }
+        if self.verdicts.is_some() && self.precision == PrecisionName::Fast {
+            bail!(
+                "--verdicts shows what decided each byte, and --precision fast decides none: leave one of them out"
             );
         }
         Ok(Settings {

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, anyhow, bail};
 use plumb::bench::measure::Unmeasured;
 use plumb::bench::{Asked, BenchError, bench, plot, table};
+use plumb::files::is_same_file;
 use plumb::image::{Document, Target};
 use plumb::render;
-use plumb::scene::{Scene, is_same_file};
+use plumb::scene::Scene;
 
 use super::progress::Progress;
-use super::values::size;
+use super::values::{size, whole};
 use super::{Answer, SOFTWARE, cache, say, source};
 
 /// More pixels than this would fill memory: several pictures are held at a time.
@@ -68,7 +69,7 @@ pub(crate) struct Args {
         long,
         value_name = "N",
         default_value_t = 5,
-        value_parser = clap::value_parser!(u32).range(1..=1000)
+        value_parser = whole(1..=1000)
     )]
     repeat: u32,
     /// Print exact figures as JSON, every run among them, in place of the tables

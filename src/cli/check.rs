@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
+use plumb::diagnostic::visible_text;
 use plumb::probe::digits::count;
 use plumb::scene::{LoadError, Scene, remarks};
 use serde_json::{Value, json};
@@ -12,8 +13,8 @@ use super::{Answer, say, source};
 /// What `plumb check` takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Every error of every file is told, with its place and what would mend it. Good files are listed on stdout, errors go \
-to stderr; exit 2 if any file is bad. --json lists both on stdout.")]
+Every error of every file is told, with its place and what would mend it. Good files are listed on stdout, and behind \
+several files how many are good and bad; errors go to stderr; exit 2 if any file is bad. --json lists both on stdout.")]
 pub(crate) struct Args {
     /// Scene files; `-` is stdin
     #[arg(required = true, value_name = "SCENE")]
@@ -27,7 +28,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut reports = Vec::new();
     let mut bad = 0;
-    for path in &args.scenes {
+    let mut after_errors = false;
+    for (place, path) in args.scenes.iter().enumerate() {
         let name = source::name(path);
         let loaded = source::load(path);
         bad += usize::from(loaded.is_err());
@@ -35,11 +37,19 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
             reports.push(report(&name, &loaded));
             continue;
         }
+        // What is wrong with a file takes several lines, which an empty one tells from those of the next.
+        if after_errors || (loaded.is_err() && place > 0) {
+            say::talk("\n");
+        }
+        after_errors = loaded.is_err();
         match loaded {
             Ok(scene) => {
-                say::data(&format!("{name}: ok ({})\n", summary(&scene)))?;
-                for remark in remarks(&scene) {
-                    say::data(&format!("  note: {remark}\n"))?;
+                let mut lines = vec![format!("{name}: ok ({})", summary(&scene))];
+                let notes = remarks(&scene).into_iter();
+                lines.extend(notes.map(|remark| format!("  note: {remark}")));
+                for line in lines {
+                    // Names of files and materials hold what they like.
+                    say::data(&format!("{}\n", visible_text(&line)))?;
                 }
             }
             Err(error) => say::error(&error),
@@ -47,6 +57,12 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     }
     if args.json {
         say::data(&format!("{:#}\n", Value::Array(reports)))?;
+    } else if args.scenes.len() > 1 {
+        if after_errors {
+            say::talk("\n");
+        }
+        let (files, good) = (args.scenes.len(), args.scenes.len() - bad);
+        say::data(&format!("{files} files: {good} good, {bad} bad\n"))?;
     }
     if bad == 0 {
         Ok(Answer::Yes)

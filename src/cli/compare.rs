@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
-use plumb::image::{self, Comparison, Format, Metadata, Picture, SizesDiffer, Target};
-use plumb::scene::is_same_file;
+use plumb::files::is_same_file;
+use plumb::image::{self, Comparison, Format, Metadata, Picture, ReadError, SizesDiffer, Target};
 use serde_json::json;
 
 use super::{Answer, SOFTWARE, picture, say};
@@ -36,7 +36,14 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         .as_ref()
         .map(|out| target(out, args))
         .transpose()?;
-    let (a, b) = (image::read(&args.a)?, image::read(&args.b)?);
+    let read = |path: &Path| {
+        let (picture, remark) = image::read_with_remark(path)?;
+        if let Some(odd) = remark {
+            say::note(&format!("{} {odd}", path.display()));
+        }
+        Ok::<_, ReadError>(picture)
+    };
+    let (a, b) = (read(&args.a)?, read(&args.b)?);
     let compared = image::compare(&a, &b);
     if let Some((target, format)) = &diff {
         match image::difference(&a, &b) {
@@ -63,9 +70,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
 /// Where the difference picture goes.
 fn target(out: &Path, args: &Args) -> Result<(Target, Format)> {
     let target = Target::from_argument(out.as_os_str());
-    let format = target.format()?;
-    if format == Format::Exr {
-        bail!("a difference picture has bytes, no values: write it as .ppm or .png");
+    let format = picture::bytes_format(&target, "--diff")?;
+    if target.is_stdout() {
+        picture::check_stdout()?;
     }
     if [&args.a, &args.b]
         .iter()

@@ -104,15 +104,13 @@ fn is_trusted(adapter: &AdapterSummary) -> bool {
 /// Which one, and why.
 fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
     let Some(adapter) = chosen.and_then(|i| adapters.get(i)) else {
-        let what = if adapters.is_empty() {
-            "there is no GPU adapter"
-        } else {
-            "none of the adapters can be used"
-        };
-        return format!(
-            "plumb renders on the CPU: {what}.\nFor a GPU: {}.",
-            install_hint()
-        );
+        let on_cpu = "plumb renders on the CPU";
+        // What is there has its driver, and its problem stands above.
+        if !adapters.is_empty() {
+            return format!("{on_cpu}: none of the adapters can be used.");
+        }
+        let hint = install_hint();
+        return format!("{on_cpu}: there is no GPU adapter.\nFor a GPU: {hint}.");
     };
     if !is_trusted(adapter) {
         return format!(
@@ -144,7 +142,7 @@ fn to_json(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
         "adapters": adapters,
         "chosen": chosen,
         "verdict": verdict(adapters, chosen),
-        "install": chosen.is_none().then(install_hint),
+        "install": adapters.is_empty().then(install_hint),
         "cpu": { "threads": args::cores() },
     });
     format!("{value:#}\n")
@@ -201,6 +199,8 @@ mod tests {
         assert!(verdict(&[], None).contains(install_hint()));
         let broken = [adapter("a", Some("it is too old"))];
         assert!(verdict(&broken, None).contains("none of the adapters can be used"));
+        // Its driver is there: another one would not help.
+        assert!(!verdict(&broken, None).contains("install"));
         assert!(to_text(&broken, None).contains("it is too old"));
     }
 

@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod doctor;
 mod dump;
+mod inherited;
 mod outputs;
 mod picture;
 mod preview;
@@ -26,10 +27,11 @@ use std::env;
 use std::path::Path;
 use std::process::{self, ExitCode};
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 
 use args::RenderOptions;
+use plumb::image::Format;
 
 /// What `--version` and the reports call the program.
 pub(crate) const SOFTWARE: &str = concat!("plumb ", env!("CARGO_PKG_VERSION"));
@@ -165,10 +167,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    // Without a handler Ctrl-C only leaves an unfinished file behind, which is no reason not to start.
-    if let Err(error) = ctrlc::set_handler(interrupted) {
-        log::warn!("Ctrl-C may leave an unfinished file: {error}");
-    }
+    inherited::on_signals(interrupted);
     let ended = match cli.command {
         None => render::filter(&cli.filter),
         Some(Command::Render(args)) => render::run(&args),
@@ -216,6 +215,13 @@ fn usage(error: &clap::Error) -> ExitCode {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => ExitCode::from(FAILED),
             _ => ExitCode::SUCCESS,
         };
+    }
+    // A picture's name behind the scene's, as other programs have it.
+    if error.kind() == ErrorKind::UnknownArgument
+        && let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg)
+        && Format::from_path(Path::new(argument)).is_ok()
+    {
+        say::talk(&format!("\n  tip: to name the picture: -o {argument}\n"));
     }
     if matches!(
         error.kind(),

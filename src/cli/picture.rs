@@ -1,9 +1,33 @@
 //! A picture on its way from the command line's jobs into `plumb::image`: opened early, but stdout late.
 
-use std::io;
+use std::io::{self, IsTerminal};
 
+use anyhow::{Result, bail};
 use plumb::image::{Finished, Format, Metadata, Output, OutputError, Target};
 use plumb::render::Band;
+
+use super::inherited::check_stdout as check_open;
+
+/// Refuses to write a picture to stdout where it would be regretted, or lost.
+pub(crate) fn check_stdout() -> Result<()> {
+    check_open()?;
+    if io::stdout().is_terminal() {
+        bail!(
+            "the picture would go to the terminal: redirect it, `> picture.ppm`, or give a name with -o"
+        );
+    }
+    Ok(())
+}
+
+/// The format of a picture that is made of bytes alone; `what` is what it is for.
+pub(crate) fn bytes_format(target: &Target, what: &str) -> Result<Format> {
+    match target.format() {
+        Ok(format) if !format.wants_values() => Ok(format),
+        _ => {
+            bail!("{what} is a picture of bytes, and {target} names none: write it as .png or .ppm")
+        }
+    }
+}
 
 /// The picture on its way out. A file is opened before anything is rendered, so that a name that cannot be written
 /// costs no time; stdout, which cannot fail to open, when there is something to write: an error before leaves it empty.

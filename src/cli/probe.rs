@@ -12,6 +12,7 @@ use plumb::scene::Scene;
 use serde_json::json;
 
 use super::args::PictureOptions;
+use super::values::{pixel, whole};
 use super::{Answer, SOFTWARE, cache, say, source};
 
 const HOW_TO_READ: &str = "\
@@ -55,11 +56,11 @@ HOW TO READ IT
   decided by  What the CPU needed to be sure of the bytes: f64 with error bounds,
            intervals of many bits, exact arithmetic.
 
-  f64      255 times the colour in f64, and how far off that may be: the first
-           thing that the CPU tries.
+  f64      255 v, v being the colour in f64, and how far off that may be: the
+           first thing that the CPU tries.
 
   GPU      Whether the GPU is sure of the bytes by itself, or in doubt; then the
-           CPU decides. Below, 255 times its colour in f32, and its bound: a byte
+           CPU decides. Below, 255 v of its colour in f32, and its bound: a byte
            is sure where no whole number is as near.";
 
 /// What `plumb probe` takes.
@@ -72,21 +73,32 @@ pub(crate) struct Args {
     /// The scene file; `-` is stdin
     scene: PathBuf,
     /// Column, from 0 at the left
-    #[arg(allow_negative_numbers = true)]
+    #[arg(allow_negative_numbers = true, value_parser = pixel)]
     x: i64,
     /// Row, from 0 at the bottom
-    #[arg(allow_negative_numbers = true)]
+    #[arg(allow_negative_numbers = true, value_parser = pixel)]
     y: i64,
     #[command(flatten)]
     picture: PictureOptions,
     /// With --samples: show the rays of this one, counted from 0
-    #[arg(long, value_name = "I")]
+    #[arg(long, value_name = "I", value_parser = whole(0..=u32::MAX))]
     sample: Option<u32>,
     /// Show everything: misses of more than 50 objects, more than 200 rays or samples, each of more than 50 lights
     #[arg(long)]
     all: bool,
     /// Print the outcome alone, as JSON: value, bytes, what decided them, what the GPU says
-    #[arg(long, conflicts_with_all = ["all", "sample"])]
+    #[arg(
+        long,
+        conflicts_with_all = ["all", "sample"],
+        long_help = "\
+Print the outcome alone, as JSON. Colours are red, green, blue, and 1 is full brightness.
+
+  value     the f32 nearest to the exact colour, which an EXR picture holds
+  bytes     the certified picture's, and `decided`: what the CPU needed for them
+  f64       the colour in f64, and how far off that may be
+  gpu       whether the GPU is sure of the bytes
+  f32       the colour in the GPU's f32, and how far off that may be"
+    )]
     json: bool,
 }
 

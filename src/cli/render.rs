@@ -9,15 +9,17 @@ use std::time::Instant;
 use anyhow::{Context, Result, anyhow, bail};
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::ExactTracer;
+use plumb::diagnostic::visible_text;
+use plumb::files::is_stream;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, PixelFault, Report, Settings};
-use plumb::scene::{Scene, is_same_file, list_model, remarks};
+use plumb::scene::{Scene, list_model, remarks};
 use serde::Serialize;
 
 use super::args::RenderOptions;
 use super::outputs::Outputs;
-use super::picture::PictureFile;
+use super::picture::{self, PictureFile};
 use super::progress::Progress;
 use super::summary::{answer, summary, told};
 use super::{Answer, SOFTWARE, say, source};
@@ -82,6 +84,8 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         return Ok(Answer::Nothing);
     };
     let command = RenderCommand::new(source::STDIN, None, scene, options);
+    // What is refused is refused before the listing, which may be long.
+    command.check(&command.target()?)?;
     if command.talks() {
         let mut listing = Vec::new();
         list_model(&command.scene, &mut listing).context("cannot list the model")?;
@@ -121,7 +125,8 @@ impl<'a> RenderCommand<'a> {
         let Some(file) = self.file else {
             return Ok(Target::Stdout);
         };
-        let Some(stem) = file.file_stem().filter(|stem| !stem.is_empty()) else {
+        let stem = file.file_stem().filter(|stem| !stem.is_empty());
+        let Some(stem) = stem.filter(|_| !is_stream(file)) else {
             bail!(
                 "{} has no name to call the picture by: give one with -o",
                 file.display()
@@ -135,22 +140,12 @@ impl<'a> RenderCommand<'a> {
 
     /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
     fn check(&self, target: &Target) -> Result<()> {
-        match target {
-            Target::Stdout => {
-                if self.options.output.is_none() && io::stdout().is_terminal() {
-                    bail!(
-                        "the picture would go to the terminal: redirect it, `> picture.ppm`, or give a name with -o"
-                    );
-                }
-            }
-            Target::Path(path) => {
-                if let Some(what) = self.scene.is_made_from(self.file, path) {
-                    bail!(
-                        "{} is {what}: give the picture another name with -o",
-                        path.display()
-                    );
-                }
-            }
+        if target.is_stdout() {
+            picture::check_stdout()?;
+        }
+        let file = source::file(self.file);
+        if let Some(what) = self.scene.is_made_from(file, target.path()) {
+            bail!("{target} is {what}: give the picture another name with -o");
         }
         Ok(())
     }
@@ -201,7 +196,8 @@ impl<'a> RenderCommand<'a> {
         self.list(&settings, &report)?;
         self.report(&target, format, &report, &finished)?;
         if self.talks() && !self.options.json {
-            say::talk(&format!("{}\n", summary(&target, &report, start.elapsed())));
+            let summary = summary(&target, &report, start.elapsed());
+            say::talk(&format!("{}\n", visible_text(&summary)));
         }
         Ok(answer(self.options.strict, &report))
     }
@@ -228,13 +224,11 @@ impl<'a> RenderCommand<'a> {
             return Ok(None);
         };
         let target = Target::from_argument(path.as_os_str());
-        let format = target.format()?;
-        if target.is_stdout() || format.wants_values() {
-            bail!("--verdicts is a picture of bytes in a file: .png or .ppm");
+        let format = picture::bytes_format(&target, "--verdicts")?;
+        if target.is_stdout() {
+            bail!("--verdicts goes to a file: give it a name that ends in .png or .ppm");
         }
-        if let Target::Path(other) = picture
-            && (other == path || is_same_file(other, path))
-        {
+        if picture.is_same(&target) {
             bail!(
                 "{} is the picture itself: give the verdicts another name",
                 path.display()

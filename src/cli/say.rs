@@ -6,9 +6,11 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::{env, fmt};
 
 use anyhow::{Context, Result};
-use plumb::diagnostic::Diagnostics;
+use plumb::diagnostic::{Diagnostics, visible_text};
 use plumb::image::{OutputError, ReadError};
 use plumb::scene::LoadError;
+
+use super::inherited::check_stdout;
 
 /// A pipe whose reader went away: no failure, the reader has seen enough.
 #[derive(Debug)]
@@ -42,6 +44,7 @@ pub(crate) fn data(text: &str) -> Result<()> {
 
 /// Lets `write` write data to stdout, however much, under the rules of [`data`].
 pub(crate) fn stream(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    check_stdout()?;
     let mut stdout = io::BufWriter::new(io::stdout().lock());
     match write(&mut stdout).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => {
@@ -59,9 +62,11 @@ pub(crate) fn talk(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Prints a line to stderr that begins with the program's name.
+/// Prints text to stderr that begins with the program's name. Names in it may hold anything; lines are those of
+/// libraries' errors.
 pub(crate) fn note(text: &str) {
-    talk(&format!("plumb: {text}\n"));
+    let lines: Vec<String> = text.lines().map(visible_text).collect();
+    talk(&format!("plumb: {}\n", lines.join("\n")));
 }
 
 /// Prints an error: scene errors as their listing, everything else as one line with its causes.

@@ -23,6 +23,11 @@ pub(crate) fn name(path: &Path) -> String {
     }
 }
 
+/// The file that the scene comes from: its own, or what stdin was redirected from, where there is a name for that.
+pub(crate) fn file(path: Option<&Path>) -> Option<&Path> {
+    path.or(cfg!(unix).then_some(Path::new("/dev/stdin")))
+}
+
 /// Loads the scene from the file, or from stdin.
 pub(crate) fn load(path: &Path) -> Result<Scene> {
     if is_stdin(path) {

@@ -9,7 +9,7 @@ use plumb::render::{Backend, Precision, Report};
 
 use super::Answer;
 
-/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6), 0.21 s; 0.26 % doubtful: f64 780, multiprecision 5, tie 2`.
+/// `walls.ppm: 640×480, GPU llvmpipe (LLVM 15.0.6), 0.21 s; certified, 0.26 % decided on the CPU: f64 780, tie 2`.
 pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> String {
     let [start, end] = report.rows;
     let mut size = format!("{}×{}", report.width, end - start);
@@ -43,7 +43,7 @@ fn decided(report: &Report) -> String {
         (Precision::Fast, Backend::Gpu, refined) => {
             format!("fast, not certified, but for {refined} on the CPU")
         }
-        (Precision::Certified, Backend::Gpu, 0) => "certified, none doubtful".into(),
+        (Precision::Certified, Backend::Gpu, 0) => "certified, all of it on the GPU".into(),
         (Precision::Certified, Backend::Gpu, _) => {
             let percent = report.refined_percent;
             let samples = if report.jitter.is_some() {
@@ -52,7 +52,7 @@ fn decided(report: &Report) -> String {
             } else {
                 String::new()
             };
-            format!("certified, {percent:.2} % doubtful{samples}: {counts}")
+            format!("certified, {percent:.2} % decided on the CPU{samples}: {counts}")
         }
         _ => format!("certified: {counts}"),
     }
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_summary_says_how_many_were_doubtful() {
+    fn the_summary_says_how_many_the_cpu_decided() {
         let mut report = report();
         let took = Duration::from_millis(210);
         let line = |report: &Report| summary(&Target::Stdout, report, took);
@@ -148,7 +148,7 @@ mod tests {
         report.refined_percent = 0.256;
         let text = line(&report);
         assert!(
-            text.ends_with("GPU card, 0.21 s; certified, 0.26 % doubtful: f64 2"),
+            text.ends_with("GPU card, 0.21 s; certified, 0.26 % decided on the CPU: f64 2"),
             "{text}"
         );
         report.samples = 16;
@@ -156,7 +156,7 @@ mod tests {
         report.refined_samples_percent = 0.021;
         let text = line(&report);
         assert!(
-            text.ends_with("certified, 0.26 % doubtful (0.02 % of the samples): f64 2"),
+            text.ends_with("certified, 0.26 % decided on the CPU (0.02 % of the samples): f64 2"),
             "{text}"
         );
         report.precision = Precision::Fast;

@@ -1,6 +1,6 @@
 //! What the values of options may be: every refusal says what is allowed.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use anyhow::{Result, bail};
 
@@ -20,6 +20,29 @@ pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
         .split_once(['x', 'X', '×'])
         .and_then(|(w, h)| Some([side(w)?, side(h)?]));
     sides.ok_or_else(|| "say columns x rows, each 1 to 1000000, like 640x480".to_owned())
+}
+
+/// A whole number in a range.
+pub(crate) fn whole(
+    range: RangeInclusive<u32>,
+) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync {
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| {
+            format!(
+                "say a whole number from {} to {}",
+                range.start(),
+                range.end()
+            )
+        })
+    }
+}
+
+/// A column or a row, of which only the picture knows how many there are.
+pub(crate) fn pixel(text: &str) -> Result<i64, String> {
+    let number = text.parse().ok();
+    number
+        .ok_or_else(|| "say a column and a row, whole numbers from 0 at the lower left".to_owned())
 }
 
 /// Rows of a picture whose height is not known yet: from the first, or from 0; to before the last, or to the top.
@@ -124,6 +147,18 @@ mod tests {
         ] {
             assert!(size(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn whole_numbers_have_a_range() {
+        let parse = whole(1..=100);
+        assert_eq!((parse("1"), parse("100")), (Ok(1), Ok(100)));
+        for bad in ["0", "101", "-1", "4.5", "4294967296", "", "many"] {
+            let told = parse(bad).unwrap_err();
+            assert_eq!(told, "say a whole number from 1 to 100", "{bad}");
+        }
+        assert_eq!((pixel("-1"), pixel("7")), (Ok(-1), Ok(7)));
+        assert!(pixel("1.5").is_err() && pixel("x").is_err());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use super::{Format, Target};
+use crate::files::reason;
 
 /// Why a picture cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -30,7 +31,7 @@ pub enum OutputError {
         folder: PathBuf,
     },
     /// The system does not let us open the target.
-    #[error("cannot write {}: {source}", .path.display())]
+    #[error("cannot write {}: {}", .path.display(), reason(.source))]
     Open {
         /// The name as given.
         path: PathBuf,
@@ -38,7 +39,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// The system does not let us create a file in the target's folder, where every picture is written first.
-    #[error("cannot write {}: creating a file in {} failed: {source}", .path.display(), .folder.display())]
+    #[error("cannot write {}: no file can be made in {}: {}", .path.display(), .folder.display(), reason(.source))]
     Create {
         /// The name as given.
         path: PathBuf,
@@ -78,7 +79,7 @@ pub enum OutputError {
         rows: u32,
     },
     /// Writing failed.
-    #[error("writing {target} failed: {source}")]
+    #[error("writing {target} failed: {}", reason(.source))]
     Write {
         /// Where it was to go.
         target: Target,

@@ -23,7 +23,6 @@ mod error;
 pub mod exr;
 mod output;
 mod png;
-mod ppm;
 pub mod read;
 mod sink;
 mod target;
@@ -35,7 +34,7 @@ pub use compare::{Comparison, SizesDiffer, compare, difference};
 pub use document::Document;
 pub use error::OutputError;
 pub use output::{Finished, HASH_KEY, Metadata, Output};
-pub use read::{Picture, ReadError, read};
+pub use read::{Picture, ReadError, read, read_with_remark};
 pub use sink::remove_unfinished;
 pub use target::Target;
 

@@ -10,8 +10,9 @@ use super::exr::{self, Exr};
 use super::png::Png;
 use super::sink::Sink;
 use super::target::Target;
-use super::{Format, OutputError, ppm};
+use super::{Format, OutputError};
 use crate::frame::Band;
+use crate::ppm;
 use crate::scene::Scene;
 use crate::settings::Settings;
 

@@ -8,7 +8,9 @@ use std::mem;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::png::text_metadata::{EncodableTextChunk, ITXtChunk, TEXtChunk};
-use ::png::{BitDepth, ColorType, DeflateCompression, Encoder, Filter, StreamWriter};
+use ::png::{
+    BitDepth, ColorType, DeflateCompression, Encoder, Filter, SrgbRenderingIntent, StreamWriter,
+};
 
 /// Bytes of compressed data a chunk; also about what is kept before it is written.
 const CHUNK: usize = 1 << 18;
@@ -67,6 +69,9 @@ impl Png {
         encoder.set_depth(BitDepth::Eight);
         encoder.set_deflate_compression(DeflateCompression::Level(1));
         encoder.set_filter(Filter::Paeth);
+        // What programs take bytes without a word about their colours for, and what they are meant as; said, since some
+        // take them for what their own screen shows.
+        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
         let writer = encoder.write_header()?;
         for (key, text) in texts {
             write_text(key, text, &mut gathered.clone())?;

@@ -9,6 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{Format, OutputError};
+use crate::files::is_same_file;
 
 /// Links followed before they are called a loop, as Linux does.
 const MAX_LINKS: usize = 40;
@@ -47,6 +48,25 @@ impl Target {
                 })
             }
             _ => Ok(Format::Ppm),
+        }
+    }
+
+    /// Whether what goes to one of them would be in the way of what goes to the other: one file, that is there or to
+    /// come.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let (a, b) = (self.path(), other.path());
+        let end = |path: &Path| match find(path) {
+            Ok(Found::Nothing(end) | Found::File(end, _)) => Some(end),
+            Ok(Found::Special) | Err(_) => None,
+        };
+        a == b || is_same_file(a, b) || matches!((end(a), end(b)), (Some(a), Some(b)) if a == b)
+    }
+
+    /// A name of it; stdout has one on most systems, which leads to the file that it was redirected to.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Path(path) if !self.is_stdout() => path,
+            _ => Path::new("/dev/stdout"),
         }
     }
 
@@ -214,6 +234,18 @@ mod tests {
             message.contains("none") && message.contains("does not exist"),
             "{message}"
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn two_names_of_a_file_to_come_are_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = |name: &str| Target::Path(folder.path().join(name));
+        std::os::unix::fs::symlink("a", folder.path().join("link")).unwrap();
+        for (name, same) in [("a", true), ("./a", true), ("link", true), ("b", false)] {
+            assert_eq!(target("a").is_same(&target(name)), same, "{name}");
+        }
+        assert!(!target("a").is_same(&Target::Stdout));
     }
 
     #[cfg(unix)]

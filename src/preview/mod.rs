@@ -122,7 +122,7 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
         ..Default::default()
     };
     let no_display = |error: winit::error::EventLoopError| PreviewError::NoDisplay {
-        reason: error.to_string(),
+        reason: plain(&error.to_string()).to_owned(),
     };
     let events = EventLoop::<eframe::UserEvent>::with_user_event()
         .build()
@@ -161,6 +161,18 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     Ok(gpu.check()?)
 }
 
+/// What a library says without where in its source it says so: `os error at /…/mod.rs:7: no display` is `no display`.
+fn plain(told: &str) -> &str {
+    told.split_once(".rs:")
+        .and_then(|(_, place)| {
+            place
+                .trim_start_matches(|c: char| c.is_ascii_digit())
+                .strip_prefix(": ")
+        })
+        .unwrap_or(told)
+        .trim_end_matches('.')
+}
+
 /// Room for the picture as it is, the panels beside it and below, within reason.
 fn window_size(options: &Options) -> [f32; 2] {
     let [width, height] = options.room.map(|pixels| pixels as f32);
@@ -168,4 +180,17 @@ fn window_size(options: &Options) -> [f32; 2] {
         (width + side::WIDTH + 24.0).clamp(800.0, 1500.0),
         (height + inspector::HEIGHT + 56.0).clamp(600.0, 950.0),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    #[test]
+    fn no_path_of_the_build_is_told() {
+        let told =
+            "os error at /home/a/registry/winit/linux/mod.rs:765: no DISPLAY is set: really.";
+        assert_eq!(plain(told), "no DISPLAY is set: really");
+        assert_eq!(plain("Exit Failure: 1"), "Exit Failure: 1");
+    }
 }

@@ -247,7 +247,7 @@ impl Pixel<'_, '_> {
 fn within(value: [f64; 3], bound: [f64; 3]) -> String {
     let bound = bound.map(|b| format!("{b:.1e}"));
     format!(
-        "{} times 255, off by at most ({})",
+        "255 v = {}, off by at most ({})",
         short_triple(value),
         bound.join(", ")
     )

@@ -51,6 +51,13 @@ pub struct Shader {
     pub brightest: fn(f64) -> f64,
 }
 
+impl Shader {
+    /// What it is in a word, which ends its name: `tiles`.
+    pub fn word(&self) -> &'static str {
+        self.name.rsplit('_').next().unwrap_or_default()
+    }
+}
+
 /// A family of shaders, numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {

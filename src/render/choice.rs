@@ -49,13 +49,14 @@ pub(super) fn choose<G: Borrow<Gpu>>(
             Ok(Choice::Cpu(Some(format!("{error}; the CPU renders"))))
         }
         // Without any GPU the CPU gives the same picture; a GPU that was named has to be there.
-        Err(error @ (GpuError::NoAdapter | GpuError::Device { .. }))
-            if settings.backend == Backend::Auto =>
-        {
-            let hint = install_hint();
-            Ok(Choice::Cpu(Some(format!(
-                "{error}, so the CPU renders; {hint}"
-            ))))
+        Err(GpuError::NoAdapter) if settings.backend == Backend::Auto => {
+            let (error, hint) = (GpuError::NoAdapter, install_hint());
+            let why = format!("{error}, so the CPU renders; {hint}");
+            Ok(Choice::Cpu(Some(why)))
+        }
+        // What does not open has its driver, and the reason is in the error.
+        Err(error @ GpuError::Device { .. }) if settings.backend == Backend::Auto => {
+            Ok(Choice::Cpu(Some(format!("{error}; the CPU renders"))))
         }
         Err(error) => Err(error.into()),
     }

@@ -9,9 +9,11 @@ mod report;
 #[cfg(test)]
 mod tests;
 
-use std::io;
+use std::error::Error as _;
+use std::{fs, io};
 
 use crate::certify::pixels::PixelDecider;
+use crate::files::reason;
 use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
@@ -57,7 +59,9 @@ pub enum Error {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// The thread pool would not start.
-    #[error("the CPU threads cannot be started: {0}")]
+    #[error(
+        "the CPU threads cannot be started: {0}; there may be too little memory, or too many processes"
+    )]
     Threads(String),
     /// The GPU was sure of a pixel and wrong, and so are rows that were handed on before that was found.
     #[error("{0}; rows that were handed on before are wrong too")]
@@ -110,13 +114,31 @@ impl<'a> Live<'a> {
 
 /// What to install where there is no adapter.
 pub fn install_hint() -> &'static str {
-    if cfg!(target_os = "linux") {
+    if cfg!(target_os = "linux") && has_vulkan_driver() {
+        "a Vulkan driver is installed, but finds no GPU, or too little memory to start (`ulimit -v`); the software one \
+         needs no GPU (Debian and Ubuntu: apt install mesa-vulkan-drivers)"
+    } else if cfg!(target_os = "linux") {
         "install your GPU's Vulkan driver, or the software one (Debian and Ubuntu: apt install mesa-vulkan-drivers)"
     } else if cfg!(windows) {
         "install your GPU's driver; plumb needs Direct3D 12"
     } else {
         "plumb needs Metal, or a Vulkan driver"
     }
+}
+
+/// Whether a Vulkan driver is where the loader looks for them first.
+fn has_vulkan_driver() -> bool {
+    ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"]
+        .iter()
+        .filter_map(|folder| fs::read_dir(folder).ok())
+        .flatten()
+        .filter_map(Result::ok)
+        .any(|entry| {
+            entry
+                .path()
+                .extension()
+                .is_some_and(|ending| ending == "json")
+        })
 }
 
 /// Renders `scene` and hands each finished band to `emit`, from the top of the picture down. `emit` may be called on
@@ -127,6 +149,9 @@ pub fn install_hint() -> &'static str {
 pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result<Report, Error> {
     let mut watch = Stopwatch::start();
     check_rows(scene, settings)?;
+    // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
+    start_threads(settings)?;
+    watch.lap(Phase::Threads);
     let choice = choose(settings, &mut watch, |watch| {
         let adapter = adapters::find(settings.adapter.as_deref());
         watch.lap(Phase::Instance);
@@ -168,6 +193,24 @@ pub fn render_live(
     Ok(Report::new(scene, settings, threads, done, &watch))
 }
 
+/// Starts the CPU threads that all pictures share, where they are wanted and have not been started yet. (Started by
+/// themselves where they are used first, they would end the process if the system refused.)
+fn start_threads(settings: &Settings) -> Result<(), Error> {
+    if settings.threads.is_some() {
+        return Ok(());
+    }
+    match rayon::ThreadPoolBuilder::new().build_global() {
+        // Without a cause it says that they have been started.
+        Err(error) if error.source().is_some() => Err(no_threads(&error)),
+        _ => Ok(()),
+    }
+}
+
+fn no_threads(error: &rayon::ThreadPoolBuildError) -> Error {
+    let cause = error.source().and_then(|cause| cause.downcast_ref());
+    Error::Threads(cause.map_or_else(|| error.to_string(), reason))
+}
+
 /// Whether the rows asked for are rows of the picture.
 fn check_rows(scene: &Scene, settings: &Settings) -> Result<(), Error> {
     let height = scene.camera.pixeldim[1];
@@ -193,7 +236,7 @@ fn run(
 ) -> Result<(usize, Done), Error> {
     let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build();
     let pool = settings.threads.map(threads).transpose();
-    let pool = pool.map_err(|error| Error::Threads(error.to_string()))?;
+    let pool = pool.map_err(|error| no_threads(&error))?;
     let threads = match &pool {
         Some(pool) => pool.current_num_threads(),
         None => rayon::current_num_threads(),

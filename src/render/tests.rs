@@ -185,7 +185,7 @@ fn a_device_that_fails_the_self_test_is_not_trusted() {
 /// A scene with mirrors, glass and shadows, some of whose samples are in doubt.
 fn hard_scene() -> Scene {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lit");
-    let text = std::fs::read(folder.join("mirror_and_glass.txt")).unwrap();
+    let text = fs::read(folder.join("mirror_and_glass.txt")).unwrap();
     let mut scene = load_from("scene", &*text, &folder).unwrap();
     scene.camera.pixeldim = [93, 71];
     scene

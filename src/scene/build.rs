@@ -162,6 +162,7 @@ impl SceneBuilder {
             filename: filename.to_owned(),
             path: filename.into(),
             texels: Arc::new(texels),
+            remark: None,
         };
         self.add_texture(name, Some(picture))
     }

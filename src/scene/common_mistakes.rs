@@ -6,13 +6,16 @@
 
 use std::ops::Range;
 
-use super::lex::{Token, TokenKind};
+use super::lex::{Lexer, Token, TokenKind};
 use super::number::{self, split_dash};
 use super::parse::Parser;
 use crate::diagnostic::Diagnostic;
 
 /// What to say where another language's comment stands.
 pub(super) const COMMENT_HELP: &str = "comments begin with `#`";
+
+/// Tokens of a vector with punctuation, brackets and commas standing alone: no more are looked at.
+const MAX_VECTOR: usize = 24;
 
 /// A space that separates nothing, since it is not ASCII's: its bytes in the token, and what it is called.
 fn strange_space(token: &[u8]) -> Option<(Range<usize>, String)> {
@@ -104,7 +107,106 @@ pub(super) fn number_help(token: &[u8], whole: bool) -> Option<String> {
     }
 }
 
+/// Numbers that are written as other languages write vectors: `<4, 3, 4>`.
+pub(super) struct Punctuated {
+    /// All of it.
+    pub(super) span: Range<usize>,
+    /// The same for a message.
+    pub(super) quoted: String,
+    /// What to write.
+    pub(super) help: String,
+}
+
+/// Punctuation around and between numbers, and what it is called.
+const PUNCTUATION: [(&[char], &str); 4] = [
+    (&['<', '>'], "angle brackets"),
+    (&['(', ')'], "parentheses"),
+    (&['[', ']'], "brackets"),
+    (&[','], "commas"),
+];
+
+/// The numbers in a token, if there is nothing else in it but punctuation.
+fn numbers_in(token: Token<'_>) -> Option<Vec<&str>> {
+    let text = std::str::from_utf8(token.text)
+        .ok()
+        .filter(|_| token.is_word())?;
+    let is_punctuation = |c| PUNCTUATION.iter().any(|(marks, _)| marks.contains(&c));
+    let numbers = text.split(is_punctuation).filter(|part| !part.is_empty());
+    numbers
+        .map(|part| {
+            number::parse_number(part.as_bytes())
+                .is_ok()
+                .then_some(part)
+        })
+        .collect()
+}
+
+/// What to say where a file begins with numbers: that is how the course's scenes were written before entities had
+/// names. Its numbers mean something by their order alone, so nothing else is said of it.
+pub(super) fn older_language(text: &[u8]) -> Option<Diagnostic> {
+    let mut lexer = Lexer::new(text);
+    let [first, second] = [lexer.token(), lexer.token()];
+    let is_number = |token: Token<'_>| token.is_word() && number::parse_number(token.text).is_ok();
+    let is_older = is_number(first) && (is_number(second) || !text.contains(&b'{'));
+    let message = "this looks like the course's older language, without names: plumb reads the one with names";
+    let example: Vec<&str> = EXAMPLE
+        .lines()
+        .filter(|line| !line.is_empty() && !line.starts_with('#'))
+        .take(EXAMPLE_LINES)
+        .collect();
+    let help = format!(
+        "a scene begins like this one, scenes/notes/walls.txt:\n{}",
+        example.join("\n")
+    );
+    is_older.then(|| Diagnostic::new(first.span(), message).help(help))
+}
+
+/// The notes' first example, and how many of its lines show what the language looks like.
+const EXAMPLE: &str = include_str!("../../scenes/notes/walls.txt");
+const EXAMPLE_LINES: usize = 10;
+
 impl Parser<'_> {
+    /// Takes numbers with punctuation around or between them, if that is what comes next. `count` is how many numbers
+    /// the attribute takes at most: with commas alone so many have to be there, since a comma may be meant as a point.
+    pub(super) fn punctuated_numbers(&mut self, count: usize) -> Option<Punctuated> {
+        let bracket = matches!(self.window[0].text, [b'<' | b'(' | b'[', ..]);
+        let comma = |token: &Token<'_>| token.text.contains(&b',');
+        if !bracket && !self.window.iter().any(comma) {
+            return None;
+        }
+        let closes = |token: &Token<'_>| token.text.iter().any(|byte| b">)]".contains(byte));
+        let mut numbers = Vec::new();
+        let mut tokens = Vec::new();
+        for token in self.ahead() {
+            let Some(mut found) = numbers_in(token) else {
+                break;
+            };
+            numbers.append(&mut found);
+            tokens.push(token);
+            if closes(&token) || tokens.len() > MAX_VECTOR {
+                break;
+            }
+        }
+        let span = tokens.first()?.start..tokens.last()?.end();
+        let all = &self.text[span.clone()];
+        let commas = numbers.len() == count && all.contains(&b',');
+        if numbers.len() < 2 || !(bracket || commas) {
+            return None;
+        }
+        let all = String::from_utf8_lossy(all);
+        let marks: Vec<&str> = PUNCTUATION
+            .iter()
+            .filter(|(marks, _)| all.contains(*marks))
+            .map(|(_, name)| *name)
+            .collect();
+        let help = format!("no {}: write `{}`", marks.join(" or "), numbers.join(" "));
+        let quoted = crate::diagnostic::quote(all.as_bytes());
+        tokens.iter().for_each(|_| {
+            self.bump();
+        });
+        Some(Punctuated { span, quoted, help })
+    }
+
     /// Skips what is left of a comment of another language, behind its first token; inside a block no brace of it.
     pub(super) fn skip_comment(&mut self, first: Token<'_>, in_block: bool) {
         let long = first.text.starts_with(b"/*");

@@ -67,6 +67,8 @@ pub(super) struct TexturePicture {
     pub(super) path: PathBuf,
     /// Its texels.
     pub(super) texels: Arc<Texels>,
+    /// What is odd about its file.
+    pub(super) remark: Option<String>,
 }
 
 impl TexturePicture {
@@ -81,6 +83,7 @@ impl TexturePicture {
             filename: filename.to_owned(),
             path: PathBuf::from(filename),
             texels: Arc::new(texels),
+            remark: None,
         }
     }
 }
@@ -128,6 +131,7 @@ impl Assembly {
                     filename: picture.filename,
                     path: picture.path,
                     texels: picture.texels,
+                    remark: picture.remark,
                 });
             }
             EntityKind::Light(class) => {
@@ -316,6 +320,7 @@ impl Draft {
             filename,
             path,
             texels,
+            remark,
         } = texture.clone();
         Self {
             name,
@@ -323,6 +328,7 @@ impl Draft {
                 filename,
                 path,
                 texels,
+                remark,
             }),
             ..Self::default()
         }

@@ -1,5 +1,7 @@
 //! What the values of an attribute must keep, and how that is said: a column of the `table`.
 
+use crate::procedural::Family;
+
 /// The largest number of columns or rows of a picture.
 pub const MAX_PIXELDIM: u32 = 1_000_000;
 
@@ -18,6 +20,8 @@ pub(super) enum Limit {
     Pixels,
     /// Each 0 to below so many.
     Below(u32),
+    /// The number of a shader of this family.
+    Shader(Family),
     /// 0 < angle ≤ 180.
     HalfAngle,
     /// Not (0, 0, 0).
@@ -50,6 +54,10 @@ impl Limit {
             Limit::Share => each(|value| (0.0..=1.0).contains(&value)),
             Limit::Pixels => each(|value| (1.0..=f64::from(MAX_PIXELDIM)).contains(&value)),
             Limit::Below(count) => all(!(0.0..f64::from(count)).contains(&values[0])),
+            Limit::Shader(family) => {
+                let count = family.shaders().len() as f64;
+                all(!(0.0..count).contains(&values[0]))
+            }
             Limit::HalfAngle => each(|value| value > 0.0 && value <= 180.0),
             Limit::NotZero => all(values.iter().all(|value| *value == 0.0)),
             Limit::NotConstant => all(values
@@ -73,9 +81,9 @@ impl Limit {
             Limit::NotNegative => String::from("0 or more"),
             Limit::Share => String::from("0 to 1"),
             Limit::Pixels => String::from("1 to 1,000,000"),
-            Limit::Below(1) => String::from("0, the only one there is"),
             Limit::Below(2) => String::from("0 or 1"),
             Limit::Below(count) => format!("0 to {}", count.saturating_sub(1)),
+            Limit::Shader(family) => list(family),
             Limit::HalfAngle => String::from("greater than 0 and at most 180 (degrees)"),
             Limit::NotZero => String::from("a direction, not 0 0 0"),
             Limit::InFront => String::from("in front of the screen: its z greater than 0"),
@@ -83,6 +91,19 @@ impl Limit {
                 String::from("an equation in x, y or z: of the first nine one is not 0")
             }
         }
+    }
+}
+
+/// The shaders of a family, each with its word: `0 (tiles), 1 (angle) or 2 (blocks)`.
+fn list(family: Family) -> String {
+    let shaders = family.shaders().iter().enumerate();
+    let mut named: Vec<String> = shaders
+        .map(|(number, shader)| format!("{number} ({})", shader.word()))
+        .collect();
+    match named.pop() {
+        Some(only) if named.is_empty() => format!("{only}, the only one there is"),
+        Some(last) => format!("{} or {last}", named.join(", ")),
+        None => String::from("one of none"),
     }
 }
 
@@ -98,6 +119,7 @@ mod tests {
             Limit::Share,
             Limit::Pixels,
             Limit::Below(3),
+            Limit::Shader(Family::Pplane),
         ];
         for limit in limits {
             assert_eq!(limit.broken(&[f64::NAN]), [0], "{limit:?}");

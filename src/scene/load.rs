@@ -1,6 +1,6 @@
 //! A file or a stream to the bytes of a scene, within bounds: the step before text → lex → parse → [`Scene`].
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -8,6 +8,7 @@ use super::model::Scene;
 use super::names::nearest;
 use super::parse::parse;
 use crate::diagnostic::Diagnostics;
+use crate::files::{self, is_same_file};
 
 /// The most bytes that a scene may have.
 pub const MAX_FILE: u64 = 256 << 20;
@@ -45,8 +46,15 @@ pub enum LoadError {
 /// When the file cannot be read, is too large, or is not a scene without mistakes.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     let bytes = read_file(path)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    Ok(parse(&path.to_string_lossy(), &bytes, folder)?)
+    Ok(parse(&path.to_string_lossy(), &bytes, folder_of(path))?)
+}
+
+/// The folder that the names of a scene's textures start at: that of its file, or the current one for a stream.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !files::is_stream(path) => folder,
+        _ => Path::new(""),
+    }
 }
 
 /// The bytes of a file that is perhaps a scene.
@@ -111,19 +119,12 @@ fn read(input: impl Read, expected: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= MAX_FILE).then_some(bytes))
 }
 
-/// Why, in words that are the same on every system where the reason is a common one.
+/// Why it cannot be read.
 fn reason(source: &io::Error) -> String {
     match source.kind() {
-        io::ErrorKind::NotFound => String::from("there is no such file"),
-        io::ErrorKind::PermissionDenied => String::from("permission denied"),
         io::ErrorKind::IsADirectory => String::from("is a directory, not a scene"),
-        _ => source.to_string(),
+        _ => files::reason(source),
     }
-}
-
-/// Whether both names lead to one file that is there.
-pub fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 impl Scene {

@@ -42,7 +42,7 @@ pub use build::{BuildError, BuildErrors, MaterialId, SceneBuilder, TextureId};
 pub use listing::list_model;
 #[cfg(feature = "preview")]
 pub(crate) use load::read_file;
-pub use load::{LoadError, MAX_FILE, is_same_file, load, load_from};
+pub use load::{LoadError, MAX_FILE, load, load_from};
 pub use model::{
     Beam, Camera, Cone, Extent, Light, Material, Object, ProjectorPicture, Quadric, Rectangle,
     Scene, Shape, Surface, Texels, Texture, TextureMode, Triangle,

@@ -231,6 +231,8 @@ pub struct Texture {
     pub path: PathBuf,
     /// Its texels.
     pub texels: Arc<Texels>,
+    /// What is odd about its file, though it can be read; after its name.
+    pub remark: Option<String>,
 }
 
 /// The texels of a texture, as a binary PPM with maxval 255 has them.

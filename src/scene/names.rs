@@ -100,6 +100,16 @@ impl<'t> Names<'t> {
                 ),
                 None => {
                     let error = Diagnostic::new(token.span(), format!("there is no {kind} {name}"));
+                    // Other languages end a value.
+                    let ended = token
+                        .text
+                        .strip_suffix(b";")
+                        .or(token.text.strip_suffix(b","));
+                    if let Some(meant) = ended.filter(|meant| self.defined.contains_key(meant)) {
+                        let help = format!("write {}: white space ends a name", quote(meant));
+                        errors.report(error.help(help));
+                        continue;
+                    }
                     // What is defined later is no good advice.
                     let before = self.candidates.iter().filter(|(index, _)| index < known);
                     match nearest(token.text, before.map(|(_, name)| *name)) {

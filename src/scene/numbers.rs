@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::common_mistakes;
 use super::lex::{Token, TokenKind};
+use super::limit::Limit;
 use super::number::{self, NumberError, looks_numeric};
 use super::parse::{Block, Parser};
 use super::table::{Attribute, Field};
@@ -43,6 +44,17 @@ impl<'t> Parser<'t> {
         field: Field,
     ) -> bool {
         let max = counts.end - 1;
+        if let Some(punctuated) = self.punctuated_numbers(max) {
+            let message = format!(
+                "`{}` takes {}, found {}",
+                row.name,
+                takes(&counts),
+                punctuated.quoted
+            );
+            let error = Diagnostic::new(punctuated.span, message);
+            self.errors.report(error.help(punctuated.help));
+            return false;
+        }
         let Some(mut numbers) = self.read_numbers(block, &counts, whole) else {
             return false;
         };
@@ -127,8 +139,36 @@ impl<'t> Parser<'t> {
             Diagnostic::new(tokens[*first].span(), message)
                 .also(tokens[*last].span(), "and this one")
         };
+        let error = match row.limit {
+            // A colour below 0 is meant to take light away.
+            Limit::NotNegative if max == 3 => {
+                let kept = |(index, token): (usize, &Token<'_>)| {
+                    let text = String::from_utf8_lossy(token.text);
+                    if broken.contains(&index) {
+                        "0".into()
+                    } else {
+                        text.into_owned()
+                    }
+                };
+                let written: Vec<String> = tokens.iter().enumerate().map(kept).collect();
+                let written = written.join(" ");
+                error.help(format!(
+                    "write `{written}`: light is added, and never taken away"
+                ))
+            }
+            _ => error,
+        };
         self.errors.report(error);
         false
+    }
+}
+
+/// How many numbers an attribute takes, in words.
+fn takes(counts: &Range<usize>) -> String {
+    match counts.end - 1 {
+        max if counts.start < max => String::from("1 or 3 numbers"),
+        1 => String::from("1 number"),
+        max => format!("{max} numbers"),
     }
 }
 
@@ -139,14 +179,7 @@ fn wrong_count(
     counts: &Range<usize>,
     span: Range<usize>,
 ) -> Diagnostic {
-    let max = counts.end - 1;
-    let takes = if counts.start < max {
-        String::from("1 or 3 numbers")
-    } else if max == 1 {
-        String::from("1 number")
-    } else {
-        format!("{max} numbers")
-    };
+    let takes = takes(counts);
     let (span, label) = match numbers.extra {
         Some((start, _)) => (start..span.end, "too many"),
         None => (span, "too few"),

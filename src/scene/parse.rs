@@ -6,9 +6,11 @@
 //! where an entity or an attribute begins again, a missing brace is seen by what follows it, and what depends on
 //! something misunderstood is not complained about.
 
+use std::iter;
 use std::ops::Range;
 use std::path::Path;
 
+use super::common_mistakes;
 use super::draft::{Assembly, Draft};
 use super::encoding;
 use super::errors::Errors;
@@ -41,6 +43,9 @@ pub(crate) fn parse_text(name: &str, bytes: &[u8]) -> Result<Scene, Diagnostics>
 
 fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<Scene, Diagnostics> {
     if let Some(error) = encoding::not_a_scene(bytes) {
+        return Err(Diagnostics::new(name, bytes, vec![error], 1));
+    }
+    if let Some(error) = common_mistakes::older_language(bytes) {
         return Err(Diagnostics::new(name, bytes, vec![error], 1));
     }
     let mut parser = Parser::new(bytes, folder);
@@ -123,6 +128,14 @@ impl<'t> Parser<'t> {
         self.window = [self.window[1], self.window[2], self.lexer.token()];
         self.last_end = token.end();
         token
+    }
+
+    /// The tokens to come, without taking them.
+    pub(super) fn ahead(&self) -> impl Iterator<Item = Token<'t>> + use<'t> {
+        let mut lexer = self.lexer.clone();
+        self.window
+            .into_iter()
+            .chain(iter::repeat_with(move || lexer.token()))
     }
 
     /// Does an entity start here? `inside` is the entity whose block this is in: a word may be its attribute.

@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use glam::DVec3;
 
 use super::{Object, Scene, Surface};
+use crate::diagnostic::quote;
 
 /// Most names that a remark lists.
 const SHOWN: usize = 3;
@@ -38,6 +39,12 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
                 "there is no light, so only ambient counts, and {} has none: what is made of it is black",
                 list(&names)
             ));
+        }
+    }
+    for texture in &scene.textures {
+        if let Some(odd) = &texture.remark {
+            let file = quote(texture.filename.as_bytes());
+            found.push(format!("texture {file} {odd}"));
         }
     }
     for (what, names) in [
@@ -76,7 +83,7 @@ fn list(names: &[&str]) -> String {
     let shown: Vec<String> = names
         .iter()
         .take(SHOWN)
-        .map(|name| format!("`{name}`"))
+        .map(|name| quote(name.as_bytes()))
         .collect();
     shown.join(", ")
         + if names.len() > SHOWN {

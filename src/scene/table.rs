@@ -8,6 +8,7 @@ use super::kind::{Class, EntityKind, LightClass};
 use super::limit::Limit;
 use super::number;
 use super::triangle;
+use crate::procedural::Family;
 
 pub use super::limit::MAX_PIXELDIM;
 
@@ -222,14 +223,14 @@ const PROCEDURAL_PLANE: &[Attribute] = &[row(
     "shader",
     "0",
     Take::Integers(1, |d| &mut d.shader),
-    Limit::Below(PPLANE_SHADERS),
+    Limit::Shader(Family::Pplane),
 )];
 
 const PROCEDURAL_SPHERE: &[Attribute] = &[row(
     "shader",
     "0",
     Take::Integers(1, |d| &mut d.shader),
-    Limit::Below(PSPHERE_SHADERS),
+    Limit::Shader(Family::Psphere),
 )];
 
 const FINITE: &[Attribute] = &[

@@ -228,6 +228,7 @@ impl<'t> Parser<'t> {
 
     /// Reads the values of a row into the draft.
     fn values(&mut self, block: &mut Block, index: usize, row: &'static Attribute, key: Token<'t>) {
+        self.skip_sign(block.entity, row);
         block.good[index] = match row.take {
             Take::Numbers(count, field) => {
                 self.numbers(block, row, key, count..count + 1, false, field)
@@ -243,6 +244,23 @@ impl<'t> Parser<'t> {
                 }
             }
         };
+    }
+
+    /// Complains about a sign between an attribute and its values, and skips it. A name may be such a sign too: then
+    /// no other follows.
+    fn skip_sign(&mut self, entity: &'static Entity, row: &Attribute) {
+        let [sign, value, _] = self.window;
+        let is_name = matches!(
+            row.take,
+            Take::Material(_) | Take::Texture(_) | Take::Picture
+        );
+        let is_followed = value.is_word() && entity.row(value.text).is_none();
+        if matches!(sign.text, b"=" | b":") && (is_followed || !is_name) {
+            let message = format!("{} cannot stand behind `{}`", sign.quoted(), row.name);
+            self.errors
+                .report(Diagnostic::new(sign.span(), message).help("remove it"));
+            self.bump();
+        }
     }
 
     /// Looks a name up that an attribute gives.

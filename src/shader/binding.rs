@@ -111,11 +111,11 @@ fn lit_objects(packed: &Packed) -> Contents<'_> {
         kind,
         ..LitObject::zeroed()
     });
-    let lit = packed.lit.iter();
-    records(
-        lit.flat_map(|lit| lit.objects.iter().copied().chain(rows.clone()))
-            .collect::<Vec<_>>(),
-    )
+    let all = |lit: &Lit| -> Vec<LitObject> {
+        let objects = lit.objects.iter().copied().chain(rows);
+        objects.chain(lit.third_sides()).collect()
+    };
+    records(packed.lit.as_ref().map(all).unwrap_or_default())
 }
 
 const READ: &str = "storage, read";
@@ -162,7 +162,7 @@ bindings! {
     /// `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that
-    /// `index_table` reads.
+    /// `index_table` reads, and the third sides of triangles, which `third_side` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
     binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
@@ -195,10 +195,7 @@ bindings! {
         |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
     binding 15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",
         |f| f.contains(&Feature::WorldSpheres), Some(|p| of_lit(p, |lit| &lit.spheres));
-    /// The third sides of the triangles among the planes.
-    binding 17, "third_sides", READ, "array<ThirdSide>", "third sides of triangles",
-        |f| f.contains(&Feature::TriangleAnywhere), Some(|p| of_lit(p, |lit| &lit.third_sides));
-    binding 18, "quadrics", READ, "array<Quadric>", "quadrics",
+    binding 17, "quadrics", READ, "array<Quadric>", "quadrics",
         |f| f.contains(&Feature::QuadricBuffer), Some(|p| records(&p.quadrics));
     /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
     binding OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;

@@ -131,6 +131,11 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
                 "SHADOW_STEPS",
                 if in_shadows { steps } else { 0 },
             ),
+            (
+                Feature::TriangleAnywhere,
+                "THIRD_SIDES",
+                lit.objects.len() + packed.tables.words.len(),
+            ),
             (Feature::WorldPlaneLoop, "WORLD_PLANES", lit.loose_planes),
             (Feature::WorldSphereLoop, "WORLD_TREE", lit.in_tree),
             (Feature::WorldSphereLoop, "WORLD_SPHERES", lit.spheres.len()),

@@ -321,14 +321,6 @@ records! {
         height: f32,
     }
 
-    /// The third side of a triangle for rays from anywhere: within, row·P − origin is ≥ 0.
-    ThirdSide as "ThirdSide" {
-        /// From the side to the inside.
-        row: [f32; 3],
-        /// What is subtracted.
-        origin: f32,
-    }
-
     /// A sphere for rays from anywhere; its center is from the viewpoint.
     WorldSphere as "WorldSphere" {
         /// From the viewpoint.

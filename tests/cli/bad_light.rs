@@ -123,7 +123,7 @@ fn what_makes_no_sense_is_refused() {
         "fplane p { material grey normal 0 0 2 point 0 0 -2 xdir 0 0 -7 dimensions 1 1 }";
     is_refused(rectangle, &["`xdir` must not be parallel to `normal`"]);
     for (file, words) in [
-        ("empty.ppm", "has no texels: it is 0 x 0"),
+        ("empty.ppm", "has no pixels: it is 0 x 0"),
         ("huge.ppm", "12884901888 bytes, and there are 10"),
         ("short.ppm", "12 bytes, and there are 11"),
         ("none.ppm", "there is no such file"),

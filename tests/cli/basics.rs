@@ -160,3 +160,10 @@ fn a_scene_in_place_of_a_command_is_understood() {
         .run(&["room.txt"])
         .fails_with(&["room.txt", "plumb render room.txt"]);
 }
+
+#[test]
+fn a_picture_behind_the_scene_is_understood() {
+    Desk::new()
+        .run(&["render", "room.txt", "out.png"])
+        .fails_with(&["out.png", "-o out.png"]);
+}

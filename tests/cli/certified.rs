@@ -233,5 +233,5 @@ fn probe_says_what_decided_a_pixel() {
         );
     }
     assert!(known > 0);
-    assert!(text.contains("\nGPU's f32    ("), "{text}");
+    assert!(text.contains("\nGPU's f32    255 v = ("), "{text}");
 }

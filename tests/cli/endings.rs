@@ -2,7 +2,9 @@
 
 use std::fs;
 use std::io::Read;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use super::desk::{Desk, ROOM};
 
@@ -85,39 +87,72 @@ fn a_full_disk_is_an_error() {
     }
 }
 
+/// A picture that takes minutes.
+#[cfg(unix)]
+const LONG: [&str; 8] = [
+    "render",
+    "room.txt",
+    "--backend",
+    "cpu",
+    "--size",
+    "30000x30000",
+    "-o",
+    "big.ppm",
+];
+
+/// Waits until a picture is being written.
+#[cfg(unix)]
+fn begun(desk: &Desk) {
+    let start = Instant::now();
+    while desk.names().len() < 2 {
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "no file is being written"
+        );
+        sleep(Duration::from_millis(5));
+    }
+    sleep(Duration::from_millis(50));
+}
+
+#[cfg(unix)]
+fn send(signal: &str, child: &Child) {
+    let sent = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+}
+
 #[cfg(unix)]
 #[test]
 fn a_signal_leaves_nothing_behind() {
-    use std::thread::sleep;
-    use std::time::{Duration, Instant};
-    for signal in ["-INT", "-TERM"] {
+    for signal in ["-INT", "-TERM", "-HUP"] {
         let desk = Desk::new();
-        let args = [
-            "render",
-            "room.txt",
-            "--backend",
-            "cpu",
-            "--size",
-            "30000x30000",
-            "-o",
-            "big.ppm",
-        ];
-        let mut child = desk.command(&args).stderr(Stdio::piped()).spawn().unwrap();
-        let start = Instant::now();
-        while desk.names().len() < 2 {
-            assert!(
-                start.elapsed() < Duration::from_secs(20),
-                "no file is being written"
-            );
-            sleep(Duration::from_millis(5));
-        }
-        sleep(Duration::from_millis(50));
-        let sent = Command::new("kill")
-            .args([signal, &child.id().to_string()])
-            .status()
-            .unwrap();
-        assert!(sent.success());
+        let mut child = desk.command(&LONG).stderr(Stdio::piped()).spawn().unwrap();
+        begun(&desk);
+        send(signal, &child);
         assert_eq!(child.wait().unwrap().code(), Some(130));
         assert_eq!(desk.names(), ["room.txt"], "{signal}");
     }
+}
+
+/// `nohup` ignores SIGHUP, and a shell without job control ignores SIGINT in what it starts in the background.
+#[cfg(unix)]
+#[test]
+fn signals_that_the_caller_ignores_stay_ignored() {
+    let desk = Desk::new();
+    let line = format!("trap '' HUP INT; exec \"$0\" {}", LONG.join(" "));
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &line, env!("CARGO_BIN_EXE_plumb")]);
+    shell.current_dir(desk.folder.path()).stderr(Stdio::piped());
+    let mut child = shell.spawn().unwrap();
+    begun(&desk);
+    for signal in ["-HUP", "-INT"] {
+        send(signal, &child);
+        sleep(Duration::from_millis(300));
+        assert_eq!(child.try_wait().unwrap(), None, "{signal}");
+    }
+    send("-TERM", &child);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(desk.names(), ["room.txt"]);
 }

@@ -35,7 +35,15 @@ fn check_tells_every_error_of_every_file() {
     let ran = desk
         .run(&["check", "bad.txt", "room.txt", "none.txt"])
         .ends(2);
-    assert_eq!(ran.text(), "room.txt: ok (3 objects, 0 lights, 40×30)\n");
+    let told = "room.txt: ok (3 objects, 0 lights, 40×30)\n3 files: 1 good, 2 bad\n";
+    assert_eq!(ran.text(), told);
+    // An empty line stands between what is said of one file and of the next.
+    assert!(
+        ran.stderr.contains("\n\nplumb: error: none.txt"),
+        "{}",
+        ran.stderr
+    );
+    assert!(!ran.stderr.starts_with('\n') && ran.stderr.ends_with("file\n\n"));
     for place in ["bad.txt:2:28", "bad.txt:7:49", "none.txt"] {
         assert!(ran.stderr.contains(place), "{place}: {}", ran.stderr);
     }
@@ -64,6 +72,31 @@ fn check_tells_every_error_of_every_file() {
     );
 }
 
+/// Names hold what they like, escape sequences too.
+#[cfg(unix)]
+#[test]
+fn control_characters_of_names_do_not_reach_the_terminal() {
+    let desk = Desk::new();
+    let twice = "material \u{1b}[31m { ambient 1 1 1 }\nmaterial \u{1b}[31m { ambient 1 1 1 }\n";
+    desk.write("\u{1b}[2Jgood.txt", &[ROOM, twice].concat());
+    desk.write("\u{1b}[2Jbad.txt", "camera");
+    let names = ["\u{1b}[2Jgood.txt", "\u{1b}[2Jbad.txt", "\u{1b}[2Jnone.txt"];
+    for args in [
+        ["check", names[0], names[1], names[2]],
+        ["render", names[0], "--backend", "cpu"],
+        ["compare", names[0], names[1], "--json"],
+        ["compare", names[2], names[1], "--json"],
+    ] {
+        let ran = desk.run(&args);
+        assert!(!ran.text().contains('\u{1b}'), "{}", ran.text());
+        assert!(!ran.stderr.contains('\u{1b}'), "{}", ran.stderr);
+    }
+    // Programs get the name as it is.
+    let json = desk.run(&["check", "--json", names[0]]).ends(0);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(json[0]["file"], names[0]);
+}
+
 /// How to get the window where it was not built.
 #[cfg(not(feature = "preview"))]
 #[test]
@@ -71,6 +104,28 @@ fn without_its_feature_preview_says_how_to_get_it() {
     let desk = Desk::new();
     let ways = ["--features preview", "plumb render SCENE"];
     desk.run(&["preview", "room.txt"]).fails_with(&ways);
+}
+
+/// Where the library that opens windows was built is nobody's business.
+#[cfg(all(feature = "preview", target_os = "linux"))]
+#[test]
+fn without_a_display_there_is_no_window() {
+    let desk = Desk::new();
+    let mut command = desk.command(&["preview", "room.txt"]);
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains("no window can be opened") && told.contains("plumb render"),
+        "{told}"
+    );
+    assert!(
+        !told.contains(".rs") && !told.contains("os error"),
+        "{told}"
+    );
 }
 
 #[cfg(feature = "preview")]

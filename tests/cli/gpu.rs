@@ -57,6 +57,27 @@ fn doctor_names_the_adapter_that_is_used() {
         .fails_with(&["no such adapter", name]);
 }
 
+/// A driver that is there and does not get its memory is not to be installed.
+#[cfg(target_os = "linux")]
+#[test]
+fn short_memory_is_no_missing_driver() {
+    let desk = Desk::new();
+    for kilobytes in [200_000, 400_000, 600_000] {
+        let program = env!("CARGO_BIN_EXE_plumb");
+        let line = format!("ulimit -v {kilobytes}; exec {program} render room.txt");
+        let mut shell = std::process::Command::new("sh");
+        // Each thread reserves memory, and machines have many cores.
+        shell.args(["-c", &line]).env("RAYON_NUM_THREADS", "2");
+        let output = shell.current_dir(desk.folder.path()).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        // The driver or the C library may take the process with them, which is not in our hands; nothing of ours does.
+        assert!(
+            !told.contains("panicked") && !told.contains("install your"),
+            "{told}"
+        );
+    }
+}
+
 /// The loader is told to find no driver at all.
 #[cfg(target_os = "linux")]
 #[test]

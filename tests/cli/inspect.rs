@@ -70,6 +70,10 @@ fn compare_answers_no_for_sizes_and_fails_for_what_is_no_picture() {
         .fails_with(&["none.ppm"]);
     desk.run(&["compare", "a.ppm", "b.ppm", "--diff", "d.exr"])
         .fails_with(&[".png"]);
+    // What is refused is not proposed.
+    let gif = desk.run(&["compare", "a.ppm", "b.ppm", "--diff", "d.gif"]);
+    assert!(!gif.stderr.contains(".exr"), "{}", gif.stderr);
+    gif.fails_with(&["d.gif", ".png or .ppm"]);
     desk.run(&["compare", "a.ppm", "b.ppm", "--diff", "b.ppm"])
         .fails_with(&["one of the pictures"]);
     assert_eq!(desk.names(), ["a.ppm", "b.ppm", "room.txt"]);
@@ -120,6 +124,8 @@ fn probe_agrees_with_the_picture() {
         .fails_with(&["columns are 0 to 39"]);
     desk.run(&["probe", "room.txt", "0", "-1"])
         .fails_with(&["rows 0 to 29"]);
+    desk.run(&["probe", "room.txt", "0", "1.5"])
+        .fails_with(&["whole numbers from 0"]);
 }
 
 #[test]
@@ -168,7 +174,7 @@ fn probe_lists_every_triangle_that_is_hit() {
     let asked = ["probe", gem, "320", "280"];
     let text = desk.run(&asked).ends(0).text();
     let listed = |name: &str| {
-        let mut lines = text.lines().map(str::trim_start);
+        let mut lines = text.lines().map(|line| line.trim_start_matches([' ', '*']));
         lines.any(|line| line.starts_with(name) && line.contains("hit   t = "))
     };
     let hit = text

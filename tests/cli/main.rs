@@ -9,6 +9,7 @@ mod certified;
 mod desk;
 mod endings;
 mod errors;
+mod files;
 mod gpu;
 mod inspect;
 mod lit;

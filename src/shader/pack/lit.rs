@@ -5,7 +5,7 @@ use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, U, round_up, upper_bound};
-use crate::shader::records::{Light, LitObject, Material, ThirdSide, WorldPlane, WorldSphere};
+use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
 #[derive(Debug, Clone)]
@@ -18,8 +18,8 @@ pub struct Lit {
     pub lights: Vec<Light>,
     /// Every plane, rectangle and triangle.
     pub planes: Vec<WorldPlane>,
-    /// The third sides of the triangles among them.
-    pub third_sides: Vec<ThirdSide>,
+    /// The third sides of the triangles among them: row and origin, as the other sides have them.
+    pub third_sides: Vec<[f32; 4]>,
     /// Every sphere; those of the tree come first.
     pub spheres: Vec<WorldSphere>,
     /// How many of the spheres their tree holds.
@@ -86,6 +86,17 @@ impl Lit {
             transparent: used().any(|material| material.transparent),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
         }
+    }
+
+    /// The third sides as they stand behind the objects: the bits of their numbers.
+    pub fn third_sides(&self) -> impl Iterator<Item = LitObject> {
+        let sides = self.third_sides.iter().map(|side| side.map(f32::to_bits));
+        sides.map(|[material, kind, group, place]| LitObject {
+            material,
+            kind,
+            group,
+            place,
+        })
     }
 
     /// Iterations of the loops over objects outside the tree, for one ray.
@@ -178,7 +189,7 @@ struct Bounds {
 }
 
 /// The end of a plane; a triangle's third side is put among the others.
-fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<ThirdSide>) -> Bounds {
+fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<[f32; 4]>) -> Bounds {
     let (none, zero) = (Bounded::zero(), V3::exact(glam::DVec3::ZERO));
     let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
     match extent {
@@ -205,16 +216,20 @@ fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<ThirdSide>) -> Bounds 
                 )
             };
             let [first, second, third] = sides.each_ref().map(unit);
-            third_sides.push(ThirdSide {
-                row: f32x3(third.0),
-                origin: third.1.value as f32,
-            });
+            let [x, y, z] = f32x3(third.0);
+            third_sides.push([x, y, z, third.1.value as f32]);
+            let origin = upper_bound(third.1);
             Bounds {
                 bounded: 1 + third_sides.len() as u32,
                 rows: [first.0, second.0],
                 origin: [first.1, second.1],
                 lengths: [Bounded::exact(LARGEST); 2],
-                most: larger_bound([first.1, second.1]).max(upper_bound(third.1)),
+                // No record has the third one, whose range would be looked at.
+                most: if origin <= LARGEST {
+                    larger_bound([first.1, second.1]).max(origin)
+                } else {
+                    f64::INFINITY
+                },
             }
         }
     }
@@ -223,7 +238,7 @@ fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<ThirdSide>) -> Bounds 
 fn world_plane(
     world: &World<Bounded>,
     plane: &prepare::WorldPlane<Bounded>,
-    third_sides: &mut Vec<ThirdSide>,
+    third_sides: &mut Vec<[f32; 4]>,
 ) -> WorldPlane {
     let mut axis_mask = [1.0; 3];
     let mut fixed_coordinate = [0.0; 3];

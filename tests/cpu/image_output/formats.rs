@@ -77,6 +77,7 @@ fn a_png_tells_its_metadata_and_its_hash() {
         (info.color_type, info.bit_depth),
         (png::ColorType::Rgb, png::BitDepth::Eight)
     );
+    assert_eq!(info.srgb, Some(png::SrgbRenderingIntent::Perceptual));
     let plain: Vec<_> = info
         .uncompressed_latin1_text
         .iter()

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use plumb::image::{
     Finished, Format, HASH_KEY, Metadata, Output, OutputError, Picture, Target, compare,
-    difference, read,
+    difference, read, read_with_remark,
 };
 use plumb::render::Band;
 use sha2::{Digest, Sha256};

@@ -24,12 +24,15 @@ fn damaged_and_foreign_files_are_refused() {
     let whole = ppm(&picture);
     for cut in [whole.len() - 1, whole.len() / 2, 13] {
         fs::write(&path, &whole[..cut]).unwrap();
-        refused("follow");
+        refused("it ends early");
     }
     fs::write(&path, &whole[..8]).unwrap();
-    refused("ends too early");
+    refused("it ends within its header");
+    // What stands behind the last pixel is not read, and is no reason to refuse what stands before.
     fs::write(&path, [&whole[..], b"\n"].concat()).unwrap();
-    refused("but more follow");
+    let (read_on, remark) = read_with_remark(&path).unwrap();
+    assert_eq!(read_on, picture);
+    assert!(remark.unwrap().starts_with("goes on behind its pixels"));
     for (format, _) in &FORMATS[1..] {
         write(&path, *format, &picture, &[30]);
         let whole = fs::read(&path).unwrap();

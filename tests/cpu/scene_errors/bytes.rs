@@ -25,6 +25,8 @@ fn bytes_that_are_not_utf8() {
               |
             2 | material gr�n { ambient 0 -5 0 }
               |                           ^^
+              |
+              = help: write `0 0 0`: light is added, and never taken away
         "#]],
     );
     check(
@@ -79,6 +81,8 @@ fn lines_are_cut() {
               |
             2 | ...0 }material green { ambient 0 5 0 }material m { ambient 0 0 -1 }material green { ambient 0 5 0 }material green { ambient 0 5 0 }material green { ambient 0 5 0 }...
               |                                                                ^^
+              |
+              = help: write `0 0 0`: light is added, and never taken away
         "#]],
     );
     check(

@@ -12,32 +12,32 @@ fn texture_files() {
     check_texture(
         b"P6 65536 65536 255\n0123456789",
         expect![[r#"
-        error: texture `wood.ppm`: ends early: 65536 x 65536 texels are 12884901888 bytes, and there are 10
-          --> scene.txt:2:25
-          |
-        2 | texture wood { filename wood.ppm }
-          |                         ^^^^^^^^
-    "#]],
+            error: texture `wood.ppm`: ends early: 65536 x 65536 pixels are 12884901888 bytes, and there are 10
+              --> scene.txt:2:25
+              |
+            2 | texture wood { filename wood.ppm }
+              |                         ^^^^^^^^
+        "#]],
     );
     check_texture(
         b"P6 2 2 255\n0123456789",
         expect![[r#"
-        error: texture `wood.ppm`: ends early: 2 x 2 texels are 12 bytes, and there are 10
-          --> scene.txt:2:25
-          |
-        2 | texture wood { filename wood.ppm }
-          |                         ^^^^^^^^
-    "#]],
+            error: texture `wood.ppm`: ends early: 2 x 2 pixels are 12 bytes, and there are 10
+              --> scene.txt:2:25
+              |
+            2 | texture wood { filename wood.ppm }
+              |                         ^^^^^^^^
+        "#]],
     );
     check_texture(
         b"P6 0 0 255\n",
         expect![[r#"
-        error: texture `wood.ppm`: has no texels: it is 0 x 0
-          --> scene.txt:2:25
-          |
-        2 | texture wood { filename wood.ppm }
-          |                         ^^^^^^^^
-    "#]],
+            error: texture `wood.ppm`: has no pixels: it is 0 x 0
+              --> scene.txt:2:25
+              |
+            2 | texture wood { filename wood.ppm }
+              |                         ^^^^^^^^
+        "#]],
     );
     check_texture(
         b"P6 1 1 65535\nabcdef",
@@ -105,7 +105,8 @@ fn texture_files() {
 fn missing_texture_file() {
     check(
         format!(
-            "{CAMERA}texture wood {{ filename no/such/wood.ppm }}\ntexture none {{ filename }}"
+            "{CAMERA}texture wood {{ filename no/such/wood.ppm }}\ntexture none {{ filename }}\n\
+             texture marked {{ filename \"wood.ppm\" }}"
         ),
         expect![[r#"
             error: texture `no/such/wood.ppm`: there is no such file
@@ -113,12 +114,22 @@ fn missing_texture_file() {
               |
             2 | texture wood { filename no/such/wood.ppm }
               |                         ^^^^^^^^^^^^^^^^
+              |
+              = help: looked for at `no/such/wood.ppm`, in the current folder
 
             error: `filename` takes a file name, found none
               --> scene.txt:3:16
               |
             3 | texture none { filename }
               |                ^^^^^^^^
+
+            error: texture `"wood.ppm"`: there is no such file
+              --> scene.txt:4:27
+              |
+            4 | texture marked { filename "wood.ppm" }
+              |                           ^^^^^^^^^^
+              |
+              = help: a file name stands without quotation marks
         "#]],
     );
 }

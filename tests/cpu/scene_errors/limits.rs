@@ -184,19 +184,19 @@ fn radius_and_dimension_and_shader() {
     check_rest(
         "pplane p { material green normal 0 0 1 point 0 0 0 shader 99 }\npsphere p { material green center 0 0 1 radius 1 shader 1 }\npplane p { material green normal 0 0 1 point 0 0 0 shader -1 }",
         expect![[r#"
-            error: `shader` must be 0 to 2
+            error: `shader` must be 0 (tiles), 1 (angle) or 2 (blocks)
               --> scene.txt:3:59
               |
             3 | pplane p { material green normal 0 0 1 point 0 0 0 shader 99 }
               |                                                           ^^
 
-            error: `shader` must be 0, the only one there is
+            error: `shader` must be 0 (angle), the only one there is
               --> scene.txt:4:57
               |
             4 | psphere p { material green center 0 0 1 radius 1 shader 1 }
               |                                                         ^
 
-            error: `shader` must be 0 to 2
+            error: `shader` must be 0 (tiles), 1 (angle) or 2 (blocks)
               --> scene.txt:5:59
               |
             5 | pplane p { material green normal 0 0 1 point 0 0 0 shader -1 }
@@ -221,18 +221,24 @@ fn material_limits() {
               |
             3 | material a { transparency 1.5 ambient 0 -1 0 }
               |                                         ^^
+              |
+              = help: write `0 0 0`: light is added, and never taken away
 
             error: `diffuse` must be 0 or more
               --> scene.txt:4:22
               |
             4 | material b { diffuse -1 0 -1 specular -1 shininess -2 }
               |                      ^^   -- and this one
+              |
+              = help: write `0 0 0`: light is added, and never taken away
 
             error: `specular` must be 0 or more
               --> scene.txt:4:39
               |
             4 | material b { diffuse -1 0 -1 specular -1 shininess -2 }
               |                                       ^^
+              |
+              = help: write `0`: light is added, and never taken away
 
             error: `shininess` must be 0 or more
               --> scene.txt:4:52
@@ -265,6 +271,8 @@ fn light_limits() {
               |
             5 | light l { location 0 0 0 emissivity 1 1 -1 }
               |                                         ^^
+              |
+              = help: write `1 1 0`: light is added, and never taken away
         "#]],
     );
     check_rest(

@@ -42,20 +42,22 @@ fn mistakes_that_look_like_others() {
     check_rest(
         "material a { ambient 1 1 1 } }\nmaterial b { ambient 1 1 -1 }",
         expect![[r#"
-        error: `}` closes nothing: no block is open here
-          --> scene.txt:3:30
-          |
-        3 | material a { ambient 1 1 1 } }
-          |                              ^
-          |
-          = help: remove it, or see whether a block before it ends too early
+            error: `}` closes nothing: no block is open here
+              --> scene.txt:3:30
+              |
+            3 | material a { ambient 1 1 1 } }
+              |                              ^
+              |
+              = help: remove it, or see whether a block before it ends too early
 
-        error: `ambient` must be 0 or more
-          --> scene.txt:4:26
-          |
-        4 | material b { ambient 1 1 -1 }
-          |                          ^^
-    "#]],
+            error: `ambient` must be 0 or more
+              --> scene.txt:4:26
+              |
+            4 | material b { ambient 1 1 -1 }
+              |                          ^^
+              |
+              = help: write `1 1 0`: light is added, and never taken away
+        "#]],
     );
     // An entity type without name and block before a whole entity.
     check_rest(

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod bytes;
+mod dialects;
 mod files;
 mod limits;
 mod lookalikes;

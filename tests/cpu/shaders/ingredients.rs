@@ -337,6 +337,7 @@ pub(super) fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
             filename: "t.ppm".into(),
             path: "t.ppm".into(),
             texels: Arc::new(texels),
+            remark: None,
         }],
     };
     let has = |ingredient| chosen.contains(&ingredient);

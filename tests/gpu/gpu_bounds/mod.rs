@@ -33,7 +33,7 @@ use crate::common;
 /// Operands for each bound.
 const MANY: usize = 1 << 18;
 /// So many of them must have been decided.
-const DECIDED: usize = 60_000;
+const DECIDED: usize = 50_000;
 /// The worst ratio must be at least this, for bounds that follow a ray, and for those of a whole picture: measured are
 /// 0.07 and more, and 0.05 and more. A bound far too large would do no harm but to speed.
 const TIGHT: f64 = 1.0 / 25.0;

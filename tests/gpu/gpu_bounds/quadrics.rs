@@ -193,7 +193,7 @@ pub(crate) fn measured(
         &wgsl,
         BODY,
         &items,
-        &[objects, (18, records)],
+        &[objects, (17, records)],
         count,
         4,
     );

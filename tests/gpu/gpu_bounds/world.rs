@@ -147,6 +147,8 @@ pub(crate) struct World {
     pub(crate) scene: Scene,
     pub(crate) packed: Packed,
     pub(crate) wgsl: String,
+    /// The objects with what stands behind them.
+    objects: Vec<u8>,
 }
 
 impl World {
@@ -158,8 +160,12 @@ impl World {
             &FeatureSet::new(&packed, settings, 8),
             Entry::Picture,
         );
+        let lit = packed.lit.iter();
+        let objects = lit.flat_map(|lit| lit.objects.iter().copied().chain(lit.third_sides()));
+        let objects: Vec<_> = objects.collect();
         Self {
             scene,
+            objects: bytemuck::cast_slice(&objects).to_vec(),
             packed,
             wgsl,
         }
@@ -374,17 +380,10 @@ fn place(seen: &mut BoundStatistics, answer: [f32; 4], truth: DVec3) {
 pub(crate) fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     let lit = world.packed.lit.as_ref().unwrap();
     [
-        (2, bytemuck::cast_slice(&lit.objects)),
+        (2, &world.objects),
         (14, bytemuck::cast_slice(&lit.planes)),
         (15, bytemuck::cast_slice(&lit.spheres)),
     ]
-}
-
-/// The same, with what the shader meets planes with.
-pub(crate) fn inputs_of_planes(world: &World) -> [(u32, &[u8]); 4] {
-    let [a, b, c] = inputs(world);
-    let lit = world.packed.lit.as_ref().unwrap();
-    [a, b, c, (17, bytemuck::cast_slice(&lit.third_sides))]
 }
 
 /// Intersections with planes and rectangles, and where they are, where they are certain.
@@ -415,7 +414,7 @@ pub(crate) fn planes(
         "{CALL}let m = plane_hits_from(world_planes[record], ray, range);
     let object = world_planes[record].object;{INTERSECTION}"
     );
-    let inputs = inputs_of_planes(world);
+    let inputs = inputs(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
     let [mut seen, mut points] = names.map(BoundStatistics::new);
     for (i, ray) in rays.iter().enumerate() {
