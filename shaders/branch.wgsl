@@ -61,13 +61,9 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
 // What a mirror where a ray from anywhere ended adds to the errors of the line and of the path's length.
 fn mirror_slip(ray: SecondaryRay, at: PathPoint) -> vec2f {
     let slip = vec2f(at.t * ray.dir_error + BOUNCE_ROUNDINGS * U * (ray.size + at.t));
-//#if sphere_beyond
     // A curved mirror is met elsewhere, at another normal: the new line is known as well as the point.
-    let curved = (objects[at.point.object].place & SPHERE_BIT) != 0u;
+    let curved = objects[at.point.object].place >= QUADRIC_BIT;
     return select(slip, vec2f(max(at.point.error - ray.base_error, 0.0), at.t_error + at.point.error), curved);
-//#else
-    return slip;
-//#end
 }
 //#end
 

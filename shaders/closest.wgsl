@@ -85,6 +85,11 @@ fn find_closest_object(ray: Ray) -> Hit {
         nearer(&closest, plane_hits(planes[i], ray), planes[i].object, i, planes[i].group);
     }
 //#end
+//#if quadric_loop
+    for (var i = 0u; i < QUADRICS; i += 1u) {
+        nearer(&closest, quadric_hits(quadrics[i], ray), quadrics[i].object, i, 0u);
+    }
+//#end
 //#if sphere_loop
     for (var i = 0u; i < SPHERES; i += 1u) {
         let sphere = sphere_at(i);

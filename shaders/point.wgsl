@@ -31,6 +31,18 @@ fn locate(ray: Ray, hit: Hit) -> Point {
 //#end
 //#if lit
     complete(&point);
+//#if lit_quadric
+    if (objects[hit.object].place & QUADRIC_BIT) != 0u {
+        let t = ray.w2 * ray.inverse_length * s;
+        let quadric = quadrics[objects[hit.object].place & ~QUADRIC_BIT];
+//#if certified
+        let error = t * (SECOND_ORDER * hit.error * s + LENGTH_ERROR);
+        on_quadric(&point, quadric_normal(quadric, as_secondary_ray(ray), t, error));
+//#else
+        on_quadric(&point, quadric_normal(quadric, as_secondary_ray(ray), t));
+//#end
+    }
+//#end
 //#if sphere_point
     if (objects[hit.object].place & SPHERE_BIT) != 0u {
         on_sphere(&point, sphere_normal(hit.index, ray, hit));
@@ -58,13 +70,14 @@ fn locate(ray: Ray, hit: Hit) -> Point {
 //#if lit
 
 const SPHERE_BIT = 0x80000000u;
+const QUADRIC_BIT = 0x40000000u;
 
 // Fills in what follows from the object alone, on a plane.
 fn complete(point: ptr<function, Point>) {
     let object = objects[(*point).object];
     (*point).group = object.group;
 //#if world_planes
-    if (object.place & SPHERE_BIT) == 0u {
+    if object.place < QUADRIC_BIT {
         let plane = world_planes[object.place];
         (*point).normal = plane.normal;
         (*point).normal_error = PLANE_NORMAL_ROUNDINGS * U; //~
@@ -79,6 +92,14 @@ fn complete(point: ptr<function, Point>) {
     }
 //#end
 }
+//#if lit_quadric
+
+// Takes the normal of a quadric, with the bound of its error.
+fn on_quadric(point: ptr<function, Point>, normal: vec4f) {
+    (*point).normal = normal.xyz;
+    (*point).normal_error = normal.w; //~
+}
+//#end
 //#if lit_sphere
 
 // Takes the normal of a sphere, with the bound of its error.
@@ -104,6 +125,18 @@ fn locate_secondary(ray: SecondaryRay, hit: SecondaryHit) -> Point {
     point.error = hit.error + POSITION_ROUNDINGS * U * (ray.size + hit.t);
 //#end
     complete(&point);
+//#if lit_quadric
+    if (objects[hit.object].place & QUADRIC_BIT) != 0u {
+        let quadric = quadrics[objects[hit.object].place & ~QUADRIC_BIT];
+//#if certified
+        on_quadric(&point, quadric_normal(quadric, ray, hit.t, hit.error));
+        point.error = SECOND_ORDER * (hit.error + ray.base_error + hit.t * ray.dir_error)
+            + POSITION_ROUNDINGS * U * (ray.size + hit.t);
+//#else
+        on_quadric(&point, quadric_normal(quadric, ray, hit.t));
+//#end
+    }
+//#end
 //#if sphere_beyond
     let object = objects[hit.object];
     if (object.place & SPHERE_BIT) != 0u {

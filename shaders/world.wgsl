@@ -126,6 +126,12 @@ fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
             world_planes[i].group, range);
     }
 //#end
+//#if quadric_loop
+    for (var i = 0u; i < QUADRICS; i += 1u) {
+        nearer_secondary(&closest, quadric_hits_from(quadrics[i], ray, range), quadrics[i].object, quadrics[i].group,
+            range);
+    }
+//#end
 //#if world_sphere_loop
     for (var i = WORLD_TREE; i < WORLD_SPHERES; i += 1u) {
         nearer_secondary(&closest, sphere_hits_from(world_spheres[i], ray, range), world_spheres[i].object,
@@ -207,6 +213,11 @@ fn any_hit(ray: SecondaryRay, range: Range) -> u32 {
 //#if world_plane_loop
     for (var i = 0u; (i < WORLD_PLANES) & (found != 2u); i += 1u) {
         found = max(found, occludes(plane_hits_from(world_planes[i], ray, range), range));
+    }
+//#end
+//#if quadric_loop
+    for (var i = 0u; (i < QUADRICS) & (found != 2u); i += 1u) {
+        found = max(found, occludes(quadric_hits_from(quadrics[i], ray, range), range));
     }
 //#end
 //#if world_sphere_loop

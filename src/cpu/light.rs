@@ -60,11 +60,14 @@ pub fn light_term<R: Real>(
     }
     let distance = distance2.sqrt();
     let d = toward * (R::exact(1.0) / distance);
-    let light_in_plane = scene.is_plane[point.object]
-        && world.plane_of(point.object).is_some_and(|plane| {
-            let lights = &plane.lights_on_surface;
-            lights.binary_search(&number).is_ok()
-        });
+    let in_surface = |lights: &[usize]| lights.binary_search(&number).is_ok();
+    let light_in_plane = if scene.is_plane[point.object] {
+        let plane = world.plane_of(point.object);
+        plane.is_some_and(|plane| in_surface(&plane.lights_on_surface))
+    } else {
+        scene.is_quadric(point.object)
+            && world.quadrics[world.places[point.object]].is_plane_with(number)
+    };
     let across = toward.dot(normal);
     if light_in_plane || !across.positive()? {
         return Ok(Lit::FacesAway);
@@ -163,6 +166,7 @@ fn shadow<R: Real>(
     let range = Range {
         skip: Some(world.groups[point.object]),
         light: Some(light),
+        through: scene.any_transparent,
     };
     let reach = match &range.light {
         Some(light) if world.has_tree() => at_most(light.distance),
@@ -182,7 +186,7 @@ fn shadow<R: Real>(
     if let Some(blocker) = dark {
         return Ok(Err(blocker));
     }
-    let hits = one_at_a_place(world, hits)?;
+    let hits = one_at_a_place(world, hits, point.object)?;
     if let Some(blocker) = hits
         .iter()
         .map(|point| point.object)
@@ -201,41 +205,53 @@ fn shadow<R: Real>(
 }
 
 /// Keeps one surface for each place where surfaces are met, the first in the file: seen from there the others are at
-/// t = 0, which is a miss.
+/// t = 0, which is a miss. A quadric that the ray left last is not met again before another surface is; `left` is where
+/// the ray comes from.
 fn one_at_a_place<R: Real>(
     world: &World<R>,
     mut hits: Vec<SecondaryHit<R>>,
+    left: usize,
 ) -> Result<Vec<Point<R>>, Undecided> {
     // Which of several coincident surfaces is met is decided once a scene.
     hits.sort_unstable_by_key(|hit| (world.groups[hit.point.object], hit.point.object));
-    hits.dedup_by_key(|hit| world.groups[hit.point.object]);
+    hits.dedup_by(|next, hit| {
+        let [next, hit] = [next, hit].map(|hit| hit.point.object);
+        next != hit && world.groups[next] == world.groups[hit]
+    });
     // Sorting by f64 puts them nearly in order, so that the exact order takes one comparison each.
     hits.sort_by(|a, b| a.t.to_f64().total_cmp(&b.t.to_f64()));
-    let mut kept: Vec<SecondaryHit<R>> = Vec::with_capacity(hits.len());
+    let mut places: Vec<Vec<SecondaryHit<R>>> = Vec::with_capacity(hits.len());
     for next in hits {
-        let mut place = kept.len();
+        let mut place = places.len();
         loop {
             let order = match place.checked_sub(1) {
-                Some(before) => (next.t - kept[before].t).sign()?,
+                Some(before) => (next.t - places[before][0].t).sign()?,
                 None => Ordering::Greater,
             };
             match order {
                 Ordering::Less => place -= 1,
                 Ordering::Greater => {
-                    kept.insert(place, next);
+                    places.insert(place, vec![next]);
                     break;
                 }
                 Ordering::Equal => {
-                    let last = &mut kept[place - 1];
-                    if next.point.object < last.point.object {
-                        *last = next;
-                    }
+                    places[place - 1].push(next);
                     break;
                 }
             }
         }
     }
-    Ok(kept.into_iter().map(|hit| hit.point).collect())
+    let mut left = left;
+    let mut kept = Vec::with_capacity(places.len());
+    for place in places {
+        let points = place.iter().map(|hit| hit.point);
+        let met = points.filter(|point| point.object != left);
+        if let Some(first) = met.min_by_key(|point| point.object) {
+            left = first.object;
+            kept.push(first);
+        }
+    }
+    Ok(kept)
 }
 
 /// The glint: specular ∘ E · (h·N)ⁿ, h the unit vector halfway between the ways back and to the light.

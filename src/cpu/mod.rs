@@ -22,6 +22,7 @@ pub mod light;
 pub mod observer;
 pub mod pixel;
 pub mod plane;
+pub mod quadric;
 mod sample;
 pub mod sphere;
 pub mod surface;

@@ -36,7 +36,7 @@ pub struct Point<R> {
     pub object: usize,
     /// The hit point from the viewpoint, in units of 2^scale.
     pub position: V3<R>,
-    /// H − center on a sphere, in the same units; zero on a plane.
+    /// H − center on a sphere, in the same units; on a quadric its gradient; zero on a plane.
     pub from_center: V3<R>,
 }
 

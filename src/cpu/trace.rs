@@ -3,6 +3,7 @@
 
 use super::camera::{Ray, camera_getdir, inverse_distance};
 use super::plane::{on_plane, plane_hits};
+use super::quadric::quadric_hits;
 use super::sphere::{sphere_from_center, sphere_hits};
 use super::surface::{Point, getamb};
 use super::tree::Tree;
@@ -20,7 +21,7 @@ pub struct Hit<R> {
     pub inverse: R,
     /// Index of the object in the scene.
     pub object: usize,
-    /// Index of the prepared plane or sphere.
+    /// Index of the prepared plane, quadric or sphere.
     pub index: usize,
 }
 
@@ -36,6 +37,17 @@ pub fn find_closest_object<R: Real>(
         let hit = plane_hits(plane, ray)?.map(|inverse| Hit {
             inverse,
             object: plane.object,
+            index,
+        });
+        if !takes(&mut closest, hit)? {
+            R::release(mark);
+        }
+    }
+    for (index, quadric) in scene.quadrics.iter().enumerate() {
+        let mark = R::mark();
+        let hit = quadric_hits(quadric, ray)?.map(|inverse| Hit {
+            inverse,
+            object: quadric.object,
             index,
         });
         if !takes(&mut closest, hit)? {
@@ -149,6 +161,14 @@ pub fn locate<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Point
         };
     }
     let mut position = ray.w * (R::exact(1.0) / hit.inverse);
+    if scene.is_quadric(object) {
+        let quadric = scene.quadrics.get(hit.index);
+        return Point {
+            object,
+            position,
+            from_center: quadric.map_or(zero, |quadric| quadric.gradient(position)),
+        };
+    }
     if !scene.is_plane[object] {
         let sphere = scene.spheres.get(hit.index).copied();
         let sphere = sphere.or_else(|| scene.make_sphere(hit.index));

@@ -113,6 +113,7 @@ impl<'a, R: Real> Tree<'a, R> {
         let range = Range {
             skip: ray.last,
             light: None,
+            through: false,
         };
         match closest_hit(self.world, ray.base, ray.dir, &range)? {
             Some(hit) => self.shade(number, ray, hit.t, &hit.point, observer)?,
@@ -239,6 +240,11 @@ impl<'a, R: Real> Tree<'a, R> {
                 // With the normal as it is given there is no root in the direction.
                 let [x, y, z] = plane.mirror;
                 V3::new(x.dot(ray.dir), y.dot(ray.dir), z.dot(ray.dir))
+            } else if scene.is_quadric(point.object) {
+                // Likewise: the gradient's length is a root that the direction need not have.
+                let gradient = point.from_center;
+                let along = gradient.dot(ray.dir).times(2.0) / gradient.dot(gradient);
+                ray.dir - gradient * along
             } else {
                 let along = normal.dot(-ray.dir);
                 normal * (along + along) + ray.dir

@@ -2,6 +2,7 @@
 
 use super::bvh::{at_most, bvh_hits};
 use super::plane::plane_hits_from;
+use super::quadric::{Start, quadric_hits_from};
 use super::sphere::sphere_hits_from;
 use super::surface::Point;
 use crate::prepare::{World, WorldPlane};
@@ -23,6 +24,9 @@ pub struct Range<R> {
     pub skip: Option<u32>,
     /// A shadow ray's light: hits count only before it.
     pub light: Option<Toward<R>>,
+    /// Whether the ray goes on through what it meets: from there all of a quadric counts that lies ahead, of the one
+    /// that the ray left too.
+    pub through: bool,
 }
 
 /// The light that a shadow ray goes to.
@@ -78,10 +82,13 @@ pub fn hits_from<R: Real>(
     take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<(), Undecided> {
     let mut reach = planes_from(world, base, dir, range, take)?;
+    if reach >= 0.0 {
+        reach = quadrics_from(world, base, dir, range, reach, take)?;
+    }
     if reach < 0.0 {
         return Ok(());
     }
-    let after_planes = reach;
+    let before_spheres = reach;
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
         let mark = R::mark();
         if reach >= 0.0
@@ -95,7 +102,7 @@ pub fn hits_from<R: Real>(
     };
     let mut treated = 0;
     if let Some(bvh) = &world.bvh {
-        bvh_hits(bvh, base, dir, after_planes, &mut sphere)?;
+        bvh_hits(bvh, base, dir, before_spheres, &mut sphere)?;
         treated = bvh.len;
     }
     for index in treated..world.sphere_count() {
@@ -145,6 +152,56 @@ fn planes_from<R: Real>(
                 }
             }
             None => R::release(mark),
+        }
+    }
+    Ok(reach)
+}
+
+/// Calls `take` with where the ray meets quadrics in range, and returns how far hits still matter.
+fn quadrics_from<R: Real>(
+    world: &World<R>,
+    base: V3<R>,
+    dir: V3<R>,
+    range: &Range<R>,
+    mut reach: f64,
+    take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
+) -> Result<f64, Undecided> {
+    for quadric in world.quadrics.iter() {
+        let left_from = range.skip == Some(world.groups[quadric.object]);
+        if left_from && !range.through {
+            continue;
+        }
+        let same_points = |group: u32| quadric.same_points.contains(&group);
+        let start = Start {
+            on_surface: left_from || range.skip.is_some_and(same_points),
+            light_on_surface: range.ends_on(&quadric.lights_on_surface),
+        };
+        let mark = R::mark();
+        let distance = range.light.map(|light| light.distance);
+        let hits = quadric_hits_from(quadric, base, dir, start, distance)?;
+        let mut any = false;
+        for (t, position) in hits.into_iter().flatten() {
+            if !range.reaches(t)? {
+                break;
+            }
+            any = true;
+            reach = take(SecondaryHit {
+                t,
+                point: Point {
+                    object: quadric.object,
+                    position,
+                    from_center: quadric.gradient(position),
+                },
+            })?;
+            if reach < 0.0 {
+                return Ok(reach);
+            }
+            if !range.through {
+                break;
+            }
+        }
+        if !any {
+            R::release(mark);
         }
     }
     Ok(reach)

@@ -159,6 +159,18 @@ fn nearness<R: Real>(world: &World<R>, object: usize, scale: i32) -> Vec<f64> {
     let place = world.places[object];
     let plane = world.planes.get(place).filter(|p| p.object == object);
     let sphere = world.spheres.get(place).filter(|s| s.object == object);
+    let quadric = world.quadrics.get(place).filter(|q| q.object == object);
+    if let Some(quadric) = quadric {
+        let lights = world.lights.iter().map(|light| {
+            let distance = quadric.distance(light.location);
+            if distance > 0.0 {
+                times(1.0 / distance, 1.0 / unit) * SLACK
+            } else {
+                f64::INFINITY
+            }
+        });
+        return lights.collect();
+    }
     let height = |location: V3<R>| match (plane, sphere) {
         (Some(plane), _) => plane.normal.dot(location) - plane.offset,
         (_, Some(sphere)) => {

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use dashu_ratio::RBig;
 use glam::DVec3;
 
+use super::quadric::Equation;
 use super::triangle::exact_normal;
 use crate::real::rational::{Ratio, dot, is_zero, ratio3};
 use crate::scene::{Beam, Light, Object, ProjectorPicture, Scene, Shape};
@@ -47,7 +48,11 @@ impl Groups {
                 let normal = exact_normal(triangle);
                 self.plane(carrier(&normal, triangle.vertices[0]))
             }
-            Shape::Quadric(_) => new,
+            // Rays that leave a curved one may meet another one of the same equation again.
+            Shape::Quadric(_) => match Equation::of(shape).and_then(|equation| equation.plane()) {
+                Some((normal, offset)) => self.plane(scaled(&normal, offset)),
+                None => new,
+            },
             Shape::Sphere { center, radius } => {
                 // Adding 0 makes −0 and 0 the same.
                 let key =
@@ -77,11 +82,15 @@ impl Groups {
 /// Numbers that are the same for the same plane, exactly: N over its first component that is
 /// not 0, and N·Q over that.
 fn carrier(normal: &[Ratio; 3], point: DVec3) -> [Ratio; 4] {
+    scaled(normal, dot(normal, &ratio3(point)))
+}
+
+/// The same of the plane N·X = offset.
+fn scaled(normal: &[Ratio; 3], offset: Ratio) -> [Ratio; 4] {
     let lead = normal.iter().find(|c| !is_zero(c)).cloned();
     let lead = lead.unwrap_or(Ratio::ONE);
-    let offset = dot(normal, &ratio3(point)) / &lead;
     let [x, y, z] = normal.clone().map(|c| c / &lead);
-    [x, y, z, offset]
+    [x, y, z, offset / lead]
 }
 
 #[cfg(test)]

@@ -23,7 +23,9 @@ pub fn hidden(scene: &Scene, groups: &[u32], screen_tolerance: f64) -> Vec<bool>
                 (facing && point.z > screen_tolerance, whole)
             }
             Shape::Triangle(ref triangle) => (is_before(triangle, screen_tolerance), false),
-            Shape::Sphere { .. } | Shape::Quadric(_) => (false, true),
+            // One that is curved shares its surface with nothing.
+            Shape::Quadric(quadric) => (false, quadric.lower.is_none() && quadric.upper.is_none()),
+            Shape::Sphere { .. } => (false, true),
         };
         let hides = before || covered[*group as usize];
         if whole {

@@ -9,6 +9,7 @@ use super::hidden::hidden;
 use super::material::Material;
 use super::on_demand::{OnDemandShapes, OnDemandSources, balls};
 use super::plane::Plane;
+use super::quadric::Quadric;
 use super::screen_grid::{self, ScreenGrid};
 use super::sphere::Sphere;
 use super::surface::Surface;
@@ -27,6 +28,8 @@ pub struct Prepared<R> {
     /// The spheres that a primary ray can hit, in file order; where they are in the screen's cells, those that are
     /// seen.
     pub spheres: Vec<Sphere<R>>,
+    /// The quadrics that a ray can hit, in file order.
+    pub quadrics: Arc<Vec<Quadric<R>>>,
     /// The triangles that are in the screen's cells; others are among the planes.
     pub triangles: Vec<Plane<R>>,
     /// Where on the screen spheres and triangles are, if there are many.
@@ -72,6 +75,10 @@ impl<R: Real> Prepared<R> {
             prepared.screen_grid = any.then(|| Arc::new(screen_grid));
             (prepared.spheres, prepared.triangles) = (spheres, triangles);
         }
+        let scale = prepared.camera.scale;
+        let tolerance = view.screen_tolerance;
+        let quadrics = Quadric::all(scene, scale, tolerance, &hidden, &groups);
+        prepared.quadrics = Arc::new(quadrics);
         let materials = scene.objects.iter().map(|object| object.material);
         let is_plane = scene.objects.iter().map(|object| match object.shape {
             Shape::Plane { .. } => true,
@@ -80,15 +87,10 @@ impl<R: Real> Prepared<R> {
         });
         prepared.materials = Arc::new(materials.collect());
         prepared.is_plane = Arc::new(is_plane.collect());
-        let scale = prepared.camera.scale;
+        let quadrics = &prepared.quadrics;
         prepared.world = lit.then(|| {
-            World::new(
-                scene,
-                scale,
-                view.screen_tolerance,
-                (Arc::clone(&groups), Arc::new(picture_planes)),
-                &hidden,
-            )
+            let groups = (Arc::clone(&groups), Arc::new(picture_planes));
+            World::new(scene, scale, tolerance, groups, &hidden, quadrics)
         });
         prepared.groups = groups;
         prepared.hidden = Arc::new(hidden);
@@ -104,10 +106,12 @@ impl<R: Real> Prepared<R> {
         sources: &OnDemandSources,
     ) -> Self {
         let prepared = Self::of(scene, view, sources.primary.is_none(), &before.hidden);
+        let scale = prepared.camera.scale;
+        let (hidden, groups) = (&before.hidden, &before.groups);
+        let quadrics = Quadric::all(scene, scale, view.screen_tolerance, hidden, groups);
+        let quadrics = Arc::new(quadrics);
         let world = before.world.as_ref().map(|world| {
-            let scale = prepared.camera.scale;
             let on_demand = sources.world.as_ref();
-            let hidden = &before.hidden;
             World::again(
                 scene,
                 scale,
@@ -115,9 +119,11 @@ impl<R: Real> Prepared<R> {
                 world,
                 hidden,
                 on_demand,
+                &quadrics,
             )
         });
         Self {
+            quadrics,
             screen_grid: before.screen_grid.clone(),
             on_demand: sources.primary.clone(),
             materials: Arc::clone(&before.materials),
@@ -184,6 +190,7 @@ impl<R: Real> Prepared<R> {
             camera,
             planes,
             spheres,
+            quadrics: Arc::default(),
             triangles: Vec::new(),
             screen_grid: None,
             on_demand: None,
@@ -214,6 +221,12 @@ impl<R: Real> Prepared<R> {
             }),
             world: world.map(|world| world.on_demand(scene, view, scale, &balls)),
         }
+    }
+
+    /// Whether an object that a ray can hit is a quadric.
+    pub fn is_quadric(&self, object: usize) -> bool {
+        let place = self.quadrics.binary_search_by_key(&object, |q| q.object);
+        place.is_ok()
     }
 
     /// How many spheres a primary ray can hit.

@@ -150,7 +150,11 @@ impl<R: Real> Surface<R> {
                 Shape::Sphere { .. } | Shape::Triangle(_) | Shape::Quadric(_),
                 scene::Surface::Tiled { .. },
             ) => Self::Plain,
-            (Shape::Quadric(_), scene::Surface::Procedural { .. }) => Self::Plain,
+            // Its shaders are planes', with the world's origin for a point.
+            (Shape::Quadric(_), scene::Surface::Procedural { shader }) => {
+                let origin = DVec3::ZERO;
+                Self::Pplane(Box::new(Pplane::new(&scene.camera, None, origin, shader)))
+            }
         }
     }
 }

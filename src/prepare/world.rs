@@ -14,6 +14,7 @@ use super::bvh::{self, Bvh};
 use super::extent::Extent;
 use super::material::Light;
 use super::on_demand::{Balls, OnDemandShapes};
+use super::quadric::Quadric;
 use super::world_plane::WorldPlane;
 use super::world_sphere::{WorldSphere, lights_on_sphere};
 use crate::real::rational::{power_of_two, ratio, two_to};
@@ -29,6 +30,8 @@ pub struct World<R> {
     pub planes: Vec<WorldPlane<R>>,
     /// All spheres that a ray can hit: those of the tree in its order, then the others in file order.
     pub spheres: Vec<WorldSphere<R>>,
+    /// All quadrics that a ray can hit, in file order.
+    pub quadrics: Arc<Vec<Quadric<R>>>,
     /// The tree over the spheres, if they are many.
     pub bvh: Option<Arc<Bvh>>,
     /// The tree over the triangles, if they are many.
@@ -45,7 +48,7 @@ pub struct World<R> {
     /// For each light: the number of the plane of its picture, on which it brings nothing; one that no object has, if
     /// it has none.
     pub picture_planes: Arc<Vec<u32>>,
-    /// For each object that a ray can hit: its place in `planes` or `spheres`.
+    /// For each object that a ray can hit: its place in `planes`, `quadrics` or `spheres`.
     pub places: Arc<Vec<usize>>,
     /// The rule H.z ≤ τ for positions.
     pub highest: R,
@@ -61,6 +64,7 @@ impl<R: Real> World<R> {
         screen_tolerance: f64,
         (groups, picture_planes): (Arc<Vec<u32>>, Arc<Vec<u32>>),
         hidden: &[bool],
+        quadrics: &Arc<Vec<Quadric<R>>>,
     ) -> Self {
         let places = Arc::default();
         let (triangle_tree, tree_objects) = triangle_tree(scene, scale, hidden);
@@ -75,10 +79,14 @@ impl<R: Real> World<R> {
             true,
         );
         world.triangle_tree = triangle_tree.map(Arc::new);
+        world.quadrics = Arc::clone(quadrics);
         world.bvh = bvh::build(&mut world.spheres).map(Arc::new);
         let mut places = vec![0; scene.objects.len()];
         for (place, plane) in world.planes.iter().enumerate() {
             places[plane.object] = place;
+        }
+        for (place, quadric) in world.quadrics.iter().enumerate() {
+            places[quadric.object] = place;
         }
         for (place, sphere) in world.spheres.iter().enumerate() {
             places[sphere.object] = place;
@@ -97,9 +105,11 @@ impl<R: Real> World<R> {
         before: &World<S>,
         hidden: &[bool],
         on_demand: Option<&OnDemandShapes>,
+        quadrics: &Arc<Vec<Quadric<R>>>,
     ) -> Self {
         let (groups, places) = (Arc::clone(&before.groups), Arc::clone(&before.places));
         Self {
+            quadrics: Arc::clone(quadrics),
             bvh: before.bvh.clone(),
             triangle_tree: before.triangle_tree.clone(),
             on_demand: on_demand.cloned(),
@@ -135,6 +145,7 @@ impl<R: Real> World<R> {
         let mut world = Self {
             planes: Vec::new(),
             spheres: Vec::new(),
+            quadrics: Arc::default(),
             bvh: None,
             triangle_tree: None,
             tree_objects: Arc::clone(&tree_objects),

@@ -13,6 +13,7 @@ pub mod digits;
 mod explain;
 mod facts;
 mod primary_ray;
+mod quadric;
 mod tree;
 mod verdict;
 mod why;

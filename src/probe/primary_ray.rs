@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use crate::cpu::camera::{Ray, camera_getdir, inverse_distance};
 use crate::cpu::hit_point::hit_point;
 use crate::cpu::plane::plane_hits;
+use crate::cpu::quadric::quadric_hits;
 use crate::cpu::sphere::sphere_hits;
 use crate::cpu::trace::{Hit, Traced};
 use crate::prepare::Prepared;
@@ -128,6 +129,14 @@ impl<'a> PrimaryRay<'a> {
             hits[plane.object] = inverse.map(|inverse| Hit {
                 inverse,
                 object: plane.object,
+                index,
+            });
+        }
+        for (index, quadric) in self.prepared.quadrics.iter().enumerate() {
+            let inverse = quadric_hits(quadric, &self.ray)?;
+            hits[quadric.object] = inverse.map(|inverse| Hit {
+                inverse,
+                object: quadric.object,
                 index,
             });
         }

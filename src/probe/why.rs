@@ -10,7 +10,7 @@ use crate::prepare::camera::{origin, step};
 use crate::real::rational::{Ratio, cross, dot, is_positive, is_zero, ratio, ratio3, sub};
 use crate::scene::{Camera, Extent, Rectangle, Scene, Shape, Triangle};
 
-use super::digits;
+use super::{digits, quadric};
 
 /// The ray of a pixel, as rational numbers: viewpoint + s·W goes through the pixel's world point at s = 1.
 pub(super) struct ExactRay {
@@ -52,6 +52,13 @@ pub(super) enum Reason {
         /// Their numbers, from 1.
         vertices: [usize; 2],
     },
+    /// A quadric is met where it is cut away.
+    CutAway {
+        /// The axis of the border.
+        axis: usize,
+        /// The coordinate there.
+        at: f64,
+    },
     /// The discriminant is negative.
     Passes,
     /// The discriminant is 0.
@@ -83,6 +90,14 @@ impl fmt::Display for Reason {
                 f,
                 "its plane is met outside the triangle: beyond the side from vertex{from} to vertex{to}"
             ),
+            Self::CutAway { axis, at } => {
+                let name = ["x", "y", "z"][*axis];
+                write!(
+                    f,
+                    "it is met where it is cut away, at {name} = {}",
+                    digits::short(*at)
+                )
+            }
             Self::Passes => f.write_str("the ray passes by"),
             Self::Tangent => f.write_str("the ray touches it, which is a miss"),
             Self::Inside => f.write_str("the viewpoint is inside it"),
@@ -120,7 +135,9 @@ impl ExactRay {
             }
             Shape::Sphere { center, radius } => self.sphere(&ratio3(center), &ratio(radius)),
             Shape::Triangle(triangle) => self.triangle(&triangle, screen_tolerance),
-            Shape::Quadric(_) => HitOrMiss::Miss(Reason::Passes),
+            Shape::Quadric(quadric) => {
+                quadric::ask(&quadric, &self.viewpoint, &self.w, screen_tolerance)
+            }
         }
     }
 
@@ -327,6 +344,37 @@ mod tests {
             beyond(2, 3),
             beyond(1, 2),
             HitOrMiss::Miss(Reason::Behind),
+        ];
+        assert_eq!(answers(&objects.join(" "), 0.0), expected);
+    }
+
+    #[test]
+    fn quadrics_answer_why() {
+        let quadric = |rest: &str| format!("quadric q {{ material m coefficients {rest} }}");
+        let objects = [
+            // (z + 3)² = 1 about (1, 1): a ball.
+            quadric("1 1 1 0 0 0 -2 -2 6 -10"),
+            quadric("1 1 1 0 0 0 -2 -2 6 -10 upper 9 9 -2.5"),
+            quadric("1 1 1 0 0 0 -2 -2 6 -10 upper 9 0.5 9"),
+            // The viewpoint is inside.
+            quadric("1 1 1 0 0 0 -2 -2 6 20"),
+            quadric("1 1 1 0 0 0 -4 -2 6 -13"),
+            quadric("1 1 1 0 0 0 -6 -2 6 -18"),
+            quadric("1 1 1 0 0 0 -2 -2 -10 -26"),
+            quadric("0 0 0 0 0 0 0 1 0 3"),
+            quadric("0 0 0 0 0 0 0 0 2 1"),
+        ];
+        let cut = HitOrMiss::Miss(Reason::CutAway { axis: 1, at: 1.0 });
+        let expected = [
+            HitOrMiss::Hit,
+            HitOrMiss::Hit,
+            cut,
+            HitOrMiss::Hit,
+            HitOrMiss::Miss(Reason::Tangent),
+            HitOrMiss::Miss(Reason::Passes),
+            HitOrMiss::Miss(Reason::Behind),
+            HitOrMiss::Miss(Reason::Parallel),
+            HitOrMiss::Miss(Reason::BeforeScreen(0.5)),
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
     }

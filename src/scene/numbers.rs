@@ -12,9 +12,12 @@ use super::table::{Attribute, Field};
 use super::values::give_rows_in;
 use crate::diagnostic::Diagnostic;
 
+/// The most numbers that an attribute takes: a quadric's coefficients.
+const MOST_NUMBERS: usize = 10;
+
 /// Numbers as they are read.
 struct Numbers<'t> {
-    values: [f64; 3],
+    values: [f64; MOST_NUMBERS],
     tokens: Vec<Token<'t>>,
     /// Numbers beyond those that the row takes: where the first of them starts, and how many there are.
     extra: Option<(usize, usize)>,
@@ -66,7 +69,8 @@ impl<'t> Parser<'t> {
             return false;
         }
         if found < max {
-            numbers.values = [numbers.values[0]; 3];
+            let value = numbers.values[0];
+            numbers.values[..max].fill(value);
         }
         let kept = self.check_limit(row, &numbers, max);
         field(&mut block.draft).copy_from_slice(&numbers.values[..max]);
@@ -81,7 +85,7 @@ impl<'t> Parser<'t> {
         whole: bool,
     ) -> Option<Numbers<'t>> {
         let mut numbers = Numbers {
-            values: [0.0; 3],
+            values: [0.0; MOST_NUMBERS],
             tokens: Vec::with_capacity(3),
             extra: None,
             good: true,

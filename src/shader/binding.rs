@@ -197,6 +197,8 @@ bindings! {
         |f| f.contains(&Feature::WorldSpheres), Some(|p| of_lit(p, |lit| &lit.spheres));
     binding 17, "projectors", READ, "array<Projector>", "projectors",
         |f| f.contains(&Feature::Projector), Some(|p| of_lit(p, |lit| &lit.projectors));
+    binding 18, "quadrics", READ, "array<Quadric>", "quadrics",
+        |f| f.contains(&Feature::QuadricBuffer), Some(|p| records(&p.quadrics));
     /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
     binding OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;
 }

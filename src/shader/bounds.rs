@@ -98,6 +98,23 @@ named! {
     DISC_ROUNDINGS = 12.0, at least 9.0;
     /// Roundings of a root by `inverseSqrt`, and what is added to it.
     ROOT_ROUNDINGS = 10.0, at least 7.5;
+    /// The 1-norm of a perpendicular and what is along the ray, by this, is no less than the way from the ray's base,
+    /// whatever the perpendicular is off by.
+    FAR_GROWTH = 1.04, at least 1.02;
+    /// Roundings of a matrix times a vector, of its sum with another.
+    GRADIENT_ROUNDINGS = 8.0, at least 6.5;
+    /// Roundings of the terms of a quadric's discriminant and of the quadratic's coefficients.
+    MOMENT_ROUNDINGS = 16.0, at least 12.5;
+    /// Roundings of a border, and of its difference from a position.
+    BORDER_ROUNDINGS = 2.0, at least 1.5;
+    /// A quotient is known where its divisor is more than this many times the divisor's bound.
+    QUOTIENT_FROM = 8.0;
+    /// 1/(1 − 1/`QUOTIENT_FROM`), and roundings.
+    QUOTIENT_GROWTH = 1.15, at least 8.0 / 7.0;
+    /// What is added to the bounds of divisors, so that no quotient overflows.
+    LEAST_SLOPE = 1.0 / (1_u64 << 40) as f64;
+    /// Primary hits on quadrics nearer than this are as if they were there.
+    NEAREST = 1.0 / (1_u64 << 40) as f64;
     /// Roundings of a unit normal.
     NORMAL_ROUNDINGS = 5.0, at least 4.5;
     /// Roundings of a vector divided by its length.

@@ -48,7 +48,7 @@ macro_rules! file {
 }
 
 /// The files of every entry point, in their order.
-const FILES: [File; 15] = [
+const FILES: [File; 16] = [
     file!("bindings.wgsl", |_| true),
     file!("camera.wgsl", |_| true),
     file!("jitter.wgsl", |f| f.contains(&Feature::Samples)
@@ -69,6 +69,7 @@ const FILES: [File; 15] = [
         && f.contains(&Feature::Certified)),
     file!("projector.wgsl", |f| f.contains(&Feature::Projector)),
     file!("light.wgsl", |f| f.contains(&Feature::Lit)),
+    file!("quadric.wgsl", |f| f.contains(&Feature::Quadric)),
     file!("closest.wgsl", |f| f.contains(&Feature::AnyObject)),
     file!("point.wgsl", |f| f.contains(&Feature::AnyObject)),
     file!("branch.wgsl", |f| f.contains(&Feature::Branches)),
@@ -170,6 +171,9 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     for (i, p) in packed.planes.iter().enumerate() {
         line("plane_hits", p.literal(), p.object, i, p.group);
     }
+    for (i, q) in packed.quadrics.iter().enumerate() {
+        line("quadric_hits", q.literal(), q.object, i, 0);
+    }
     for (i, s) in packed.spheres.iter().enumerate() {
         line("sphere_hits", s.literal(), s.object, i, 0);
     }
@@ -193,6 +197,10 @@ fn unrolled_world(
     for p in &lit.planes {
         let call = format!("plane_hits_from({}, ray, range)", p.literal());
         line(call, p.object, p.group);
+    }
+    for q in &packed.quadrics {
+        let call = format!("quadric_hits_from({}, ray, range)", q.literal());
+        line(call, q.object, q.group);
     }
     for s in &lit.spheres {
         let call = format!("sphere_hits_from({}, ray, range)", s.literal());

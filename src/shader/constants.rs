@@ -77,6 +77,7 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
             "TRIANGLE_ROOT",
             packed.triangle_root.unwrap_or(0),
         ),
+        (Feature::QuadricLoop, "QUADRICS", packed.quadrics.len()),
         (Feature::Tables, "TABLES", packed.objects.len()),
         (Feature::Tables, "COLUMNS", packed.tables.columns as usize),
         (Feature::Bvh, "BVH_DEPTH", packed.bvh_depth),
@@ -102,8 +103,8 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         ]);
     }
     let words = set.partial_words();
-    // Each of up to four loops takes one more iteration, which only finds its end.
-    let primary_steps = packed.loop_iterations() + 4;
+    // Each of up to five loops takes one more iteration, which only finds its end.
+    let primary_steps = packed.loop_iterations() + 5;
     counts.extend([
         (Feature::Partial, "PARTIAL_WORDS", words as usize),
         (
@@ -119,8 +120,8 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
         ),
     ]);
     if let Some(lit) = &packed.lit {
-        // Either loop takes one more iteration, which only finds its end.
-        let steps = lit.loop_iterations() + 2;
+        // Each of three loops takes one more iteration, which only finds its end.
+        let steps = lit.loop_iterations() + packed.quadrics.len() + 3;
         let in_shadows = has(Feature::WorldLoop) && has(Feature::AnyHit);
         counts.extend([
             (Feature::Lit, "LIGHTS", lit.lights.len()),

@@ -51,6 +51,14 @@ features! {
     SphereLoop = "sphere_loop",
     /// Spheres stand in a buffer.
     SphereBuffer = "sphere_buffer",
+    /// There are quadrics.
+    Quadric = "quadric",
+    /// Quadrics stand in a buffer.
+    QuadricBuffer = "quadric_buffer",
+    /// Quadrics stand in a buffer and are asked one by one.
+    QuadricLoop = "quadric_loop",
+    /// There are quadrics, and lights.
+    LitQuadric = "lit_quadric",
     /// Where a primary ray hits a sphere is looked at.
     SpherePoint = "sphere_point",
     /// Spheres are hit by rays from elsewhere, or looked at as if by such.

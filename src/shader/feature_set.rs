@@ -20,7 +20,9 @@ pub struct FeatureSet {
     pub front: bool,
     /// There are spheres that primary rays can hit.
     pub spheres: bool,
-    /// They are many, in cells of the screen.
+    /// There are quadrics.
+    pub quadrics: bool,
+    /// There are so many spheres that they are in cells of the screen.
     pub screen_grid: bool,
     /// Some objects share a surface.
     pub groups: bool,
@@ -116,10 +118,9 @@ impl FeatureSet {
     /// The features of a packed scene, rendered as the settings say, on a device where `lanes` invocations share a
     /// limit on loops (see [`Gpu::lanes`](crate::gpu::device::Gpu::lanes)).
     pub fn new(packed: &Packed, settings: &Settings, lanes: u32) -> Self {
-        let objects = packed
-            .lit
-            .as_ref()
-            .map_or(packed.tested(), |lit| lit.planes.len() + lit.spheres.len());
+        let objects = packed.lit.as_ref().map_or(packed.tested(), |lit| {
+            lit.planes.len() + lit.spheres.len() + packed.quadrics.len()
+        });
         let fronts = packed
             .planes
             .iter()
@@ -132,6 +133,7 @@ impl FeatureSet {
             polygons: !packed.polygons.is_empty(),
             front: fronts.into_iter().any(|front| front != [0.0, 0.0, 1.0]),
             spheres: !packed.spheres.is_empty(),
+            quadrics: !packed.quadrics.is_empty(),
             screen_grid: packed.screen_grid.is_some(),
             groups: packed.planes.iter().any(|p| p.group != 0)
                 || packed.polygons.iter().any(|r| r.group != 0),
@@ -163,7 +165,8 @@ impl FeatureSet {
                     || lit
                         .spheres
                         .iter()
-                        .any(|sphere| sphere.lights_on_surface != 0),
+                        .any(|sphere| sphere.lights_on_surface != 0)
+                    || packed.quadrics.iter().any(|q| q.lights_on_surface != 0),
                 low_light: lit.planes.iter().any(|plane| plane.height != 0.0),
                 planes: !lit.planes.is_empty(),
                 loose_planes: lit.loose_planes > 0,
@@ -190,7 +193,7 @@ impl FeatureSet {
 
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
-        self.planes || self.polygons || self.spheres
+        self.planes || self.polygons || self.spheres || self.quadrics
     }
 
     /// Words of a record that the shader leaves of a pixel of which only some samples are sure; 0 where it leaves none.
@@ -295,6 +298,10 @@ impl<'a> Conditions<'a> {
             Feature::PlaneLoop => set.planes && loops,
             Feature::PolygonLoop => set.loose_polygons && loops,
             Feature::Sphere => set.spheres,
+            Feature::Quadric => set.quadrics,
+            Feature::QuadricBuffer => set.quadrics && (lit || loops),
+            Feature::QuadricLoop => set.quadrics && loops,
+            Feature::LitQuadric => set.quadrics && lit,
             Feature::ScreenGrid => (set.spheres || set.grid_triangles) && set.screen_grid,
             Feature::GridSpheres => set.spheres && set.screen_grid,
             Feature::GridTriangles => set.grid_triangles,
@@ -312,7 +319,10 @@ impl<'a> Conditions<'a> {
             Feature::Certified => certified,
             Feature::Moving => any && set.moving,
             Feature::Barrier => {
-                lit || pplane || psphere || (certified && (set.spheres || tiled || textured))
+                lit || pplane
+                    || psphere
+                    || set.quadrics
+                    || (certified && (set.spheres || tiled || textured))
             }
             Feature::Groups => set.groups && certified,
             Feature::Tables => certified && set.tables,
@@ -320,7 +330,7 @@ impl<'a> Conditions<'a> {
             Feature::SureIndex => certified && (tiled || textured || pplane || light.projectors),
             Feature::Doubtful => certified && (lit || tiled || textured || pplane || psphere),
             Feature::Mixed => {
-                let shapes = [set.planes, set.polygons, set.spheres];
+                let shapes = [set.planes, set.polygons, set.spheres, set.quadrics];
                 set.screen_grid || shapes.iter().filter(|shape| **shape).count() > 1
             }
             Feature::Modulated => set.kinds.iter().any(|kind| kind.modulates_ambient(lit)),
@@ -355,7 +365,9 @@ impl<'a> Conditions<'a> {
             Feature::LowLight => light.low_light,
             Feature::SidesAnywhere => light.sides,
             Feature::TriangleAnywhere => light.triangles,
-            Feature::WorldLoop => lit && loops && (light.loose_planes || light.loose_spheres),
+            Feature::WorldLoop => {
+                lit && loops && (light.loose_planes || light.loose_spheres || set.quadrics)
+            }
             Feature::WorldPlaneLoop => lit && loops && light.loose_planes,
             Feature::WorldSphereLoop => lit && loops && light.loose_spheres,
             // A helper comes in where a chosen shader names it, or another helper does.

@@ -234,7 +234,7 @@ records! {
         kind: u32,
         /// Number of the surface that it is or is part of.
         group: u32,
-        /// Index into the planes, or into the spheres with the highest bit set.
+        /// Index into the planes; into the spheres with the highest bit set, into the quadrics with the one below.
         place: u32,
     }
 
@@ -375,6 +375,45 @@ records! {
         inverse_radius: f32,
         /// Nothing.
         pad: Pad3,
+    }
+
+    /// A quadric; positions are from the viewpoint. About its `center` C, which is a point near it, the left side of
+    /// its equation is p·Ap + 2·slope·p + constant, p = H − C.
+    Quadric as "Quadric" {
+        /// From the viewpoint, exactly.
+        center: [f32; 3],
+        /// Index of the object.
+        object: u32,
+        /// Diagonal of A.
+        diagonal: [f32; 3],
+        /// Number of the surface.
+        group: u32,
+        /// What stands beside it: yz, xz, xy.
+        beside: [f32; 3],
+        /// The left side at C.
+        constant: f32,
+        /// Diagonal of the adjoint of A.
+        adjoint_diagonal: [f32; 3],
+        /// A vector becomes by A at most so many times as long.
+        norm: f32,
+        /// What stands beside it.
+        adjoint_beside: [f32; 3],
+        /// The same for the adjoint.
+        adjoint_norm: f32,
+        /// Half the gradient at C.
+        slope: [f32; 3],
+        /// Its length.
+        slope_size: f32,
+        /// The least coordinates of hits.
+        #[any_size = "a number beyond all positions stands for no border, and it is only compared"]
+        lower: [f32; 3],
+        /// Length of `center`.
+        size: f32,
+        /// The greatest coordinates of hits; that of z is the front rule's at most.
+        #[any_size = "a number beyond all positions stands for no border, and it is only compared"]
+        upper: [f32; 3],
+        /// Bit i: light i lies on the surface.
+        lights_on_surface: u32,
     }
 }
 

@@ -10,6 +10,7 @@ mod known_answers;
 mod listing;
 mod other_shaders;
 mod premises;
+mod quadrics;
 mod scene_errors;
 mod scene_fuzz;
 mod shaders;

@@ -28,6 +28,7 @@ const SOURCES: &[&str] = &[
     "shaders/plane.wgsl",
     "shaders/point.wgsl",
     "shaders/projector.wgsl",
+    "shaders/quadric.wgsl",
     "shaders/sphere.wgsl",
     "shaders/surface.wgsl",
     "shaders/trace.wgsl",

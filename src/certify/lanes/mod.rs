@@ -144,7 +144,10 @@ impl Lanes {
     /// A packed scene without lights, for a ray a pixel.
     pub fn of(packed: Packed) -> Option<Self> {
         let here = |kind: &SurfaceKind| matches!(kind, SurfaceKind::Plain | SurfaceKind::Tiled);
-        if packed.unprovable.is_some() || !packed.kinds.iter().any(here) {
+        if packed.unprovable.is_some()
+            || !packed.quadrics.is_empty()
+            || !packed.kinds.iter().any(here)
+        {
             return None;
         }
         let condition = f64::from(packed.camera.condition);

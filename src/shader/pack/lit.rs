@@ -40,6 +40,8 @@ pub struct Lit {
 
 /// Marks a sphere in [`LitObject::place`].
 const SPHERE_BIT: u32 = 1 << 31;
+/// Marks a quadric there.
+const QUADRIC_BIT: u32 = 1 << 30;
 
 impl Lit {
     /// With the record of each light that is a projector and lights anything.
@@ -59,11 +61,15 @@ impl Lit {
         for (place, sphere) in (0..).zip(spheres) {
             places[sphere.object] = place | SPHERE_BIT;
         }
+        for (place, quadric) in (0..).zip(world.quadrics.iter()) {
+            places[quadric.object] = place | QUADRIC_BIT;
+        }
         let mut third_sides = Vec::new();
         let on_surfaces = planes
             .iter()
             .map(|p| &p.lights_on_surface)
-            .chain(spheres.iter().map(|s| &s.lights_on_surface));
+            .chain(spheres.iter().map(|s| &s.lights_on_surface))
+            .chain(world.quadrics.iter().map(|q| &q.lights_on_surface));
         Self {
             unnumbered_light_on_surface: on_surfaces.flatten().any(|light| *light >= 32),
             objects: (0..scene.surfaces.len())
@@ -181,7 +187,7 @@ pub(super) fn size(v: V3<Bounded>) -> f32 {
 }
 
 /// The bits of the first 32 lights in a list. Beyond them f32's own rounding decides: fast rendering only.
-fn bits(lights_on_surface: &[usize]) -> u32 {
+pub(super) fn bits(lights_on_surface: &[usize]) -> u32 {
     lights_on_surface
         .iter()
         .filter(|&&light| light < 32)

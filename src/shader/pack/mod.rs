@@ -3,6 +3,7 @@
 mod lit;
 mod primary;
 mod projector;
+mod quadric;
 mod range;
 mod shared;
 mod surface;
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, U, W_ROUNDINGS, round_up, upper_bound};
 use super::kind::SurfaceKind;
 use super::records::{
-    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Sphere,
+    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Quadric, Sphere,
     SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
 use crate::prepare::bvh::Bvh;
@@ -76,6 +77,8 @@ pub struct Packed {
     pub dark: f32,
     /// The largest coordinate of the tree's boxes, all three summed.
     pub tree_size: f32,
+    /// Quadrics, for all rays.
+    pub quadrics: Vec<Quadric>,
     /// Why the error bounds cannot be relied on, if they cannot.
     pub unprovable: Option<&'static str>,
 }
@@ -127,6 +130,7 @@ impl Packed {
             lit: None,
             dark: 0.0,
             tree_size: 0.0,
+            quadrics: quadric::all(scene, prepared),
             unprovable: None,
         };
         packed.pack_primary(prepared, &surfaces, screen);
@@ -143,7 +147,8 @@ impl Packed {
             let objects: Vec<u32> = planes
                 .chain(packed.polygons.iter().map(|r| r.object))
                 .collect();
-            for object in objects {
+            let curved = packed.quadrics.iter().map(|q| q.object);
+            for object in objects.into_iter().chain(curved.collect::<Vec<_>>()) {
                 packed.pack_surface(prepared, object as usize, &mut textures, 0);
             }
             for record in 0..packed.spheres.len() {
@@ -299,7 +304,7 @@ impl Packed {
 
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
-        self.planes.len() + self.polygons.len() + self.spheres.len()
+        self.planes.len() + self.polygons.len() + self.spheres.len() + self.quadrics.len()
     }
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
@@ -319,7 +324,7 @@ impl Packed {
             Some(_) => 0,
             None => self.spheres.len(),
         };
-        self.planes.len() + self.loose_polygons() + spheres
+        self.planes.len() + self.loose_polygons() + self.quadrics.len() + spheres
     }
 
     /// How many of the polygons are in no cell of the screen.

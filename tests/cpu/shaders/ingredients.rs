@@ -35,6 +35,9 @@ pub(super) enum Ingredient {
     Triangle,
     Ptriangle(u32),
     ManyTriangles,
+    Quadric,
+    Pquadric(u32),
+    ManyQuadrics,
     TiledAlong,
     Texplane(TextureMode),
     Lamp,
@@ -66,6 +69,8 @@ pub(super) fn ingredients() -> Vec<Ingredient> {
         Rectangle,
         Triangle,
         ManyTriangles,
+        Quadric,
+        ManyQuadrics,
         TiledAlong,
         Texplane(TextureMode::Fit),
         Texplane(TextureMode::Tile),
@@ -81,7 +86,7 @@ pub(super) fn ingredients() -> Vec<Ingredient> {
         Samples,
         CourseSamples,
     ];
-    all.extend((0..PPLANE_SHADERS).flat_map(|n| [Pplane(n), Ptriangle(n)]));
+    all.extend((0..PPLANE_SHADERS).flat_map(|n| [Pplane(n), Ptriangle(n), Pquadric(n)]));
     all.extend((0..PSPHERE_SHADERS).flat_map(|n| [SmallPsphere(n), WidePsphere(n)]));
     all
 }
@@ -169,6 +174,14 @@ pub(super) fn objects(ingredient: Ingredient) -> Vec<Object> {
                 triangle(corner, Surface::Plain)
             })
             .collect(),
+        Quadric => vec![quadric(DVec3::new(3.0, 2.0, -9.0), Surface::Plain)],
+        Pquadric(shader) => {
+            let center = DVec3::new(5.0, 2.0, -9.0);
+            vec![quadric(center, Surface::Procedural { shader })]
+        }
+        ManyQuadrics => (0..40)
+            .map(|i| quadric(DVec3::new(f64::from(i % 8), 1.0, -20.0), Surface::Plain))
+            .collect(),
         Coplanar => {
             let wall = plane(DVec3::Z, DVec3::new(0.0, 0.0, -4.0), Surface::Plain);
             vec![rectangle(Surface::Plain), wall]
@@ -208,6 +221,34 @@ fn triangle(corner: DVec3, surface: Surface) -> Object {
     }
 }
 
+/// A cone that is cut.
+fn quadric(apex: DVec3, surface: Surface) -> Object {
+    let DVec3 { x, y, z } = apex;
+    let right = y * y - x * x - z * z;
+    let shape = Shape::Quadric(scene::Quadric {
+        coefficients: [
+            1.0,
+            -1.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            -2.0 * x,
+            2.0 * y,
+            -2.0 * z,
+            right,
+        ],
+        lower: Some(apex - DVec3::ONE),
+        upper: None,
+    });
+    Object {
+        name: "q".into(),
+        material: 0,
+        shape,
+        surface,
+    }
+}
+
 fn rectangle(surface: Surface) -> Object {
     let extent = Extent::Rectangle(Rectangle {
         xdir: DVec3::X,
@@ -241,7 +282,7 @@ fn lights(ingredient: Ingredient) -> Vec<Light> {
             Beam::Picture(ProjectorPicture {
                 normal: DVec3::Y,
                 point: DVec3::new(3.0, 5.0, 1.0),
-                rectangle: scene::Rectangle {
+                rectangle: Rectangle {
                     xdir: DVec3::X,
                     dimensions: DVec2::new(2.0, 3.0),
                 },

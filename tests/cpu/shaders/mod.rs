@@ -22,7 +22,9 @@ use ingredients::{composed, ingredients, objects, packed};
 /// Whether an ingredient is a procedural surface whose shader, or one that it calls, names `helper`.
 fn asks(ingredient: Ingredient, helper: &str) -> bool {
     match ingredient {
-        Pplane(shader) | Ptriangle(shader) => procedural::asks(Family::Pplane, shader, helper),
+        Pplane(shader) | Ptriangle(shader) | Pquadric(shader) => {
+            procedural::asks(Family::Pplane, shader, helper)
+        }
         SmallPsphere(shader) | WidePsphere(shader) => {
             procedural::asks(Family::Psphere, shader, helper)
         }
@@ -56,8 +58,12 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     let (wgsl, features) = composed(&all);
     assert_valid(&wgsl, "all");
     // A scene that has everything but many objects has them as literals, and one without lights has other shapes.
-    let few =
-        |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres | ManyTriangles | Fast | Values);
+    let few = |i: &Ingredient| {
+        !matches!(
+            i,
+            ManyPlanes | ManySpheres | ManyTriangles | ManyQuadrics | Fast | Values
+        )
+    };
     let dark = |i: &Ingredient| {
         !matches!(
             i,
@@ -226,7 +232,12 @@ fn what_is_not_used_is_not_there() {
         }),
         ("bvh", &|_| false),
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
-        ("Pplane", &|i| matches!(i, Pplane(_) | Ptriangle(_))),
+        ("Pplane", &|i| {
+            matches!(i, Pplane(_) | Ptriangle(_) | Pquadric(_))
+        }),
+        ("quadric_meets", &|i| {
+            matches!(i, Quadric | Pquadric(_) | ManyQuadrics)
+        }),
         ("Texplane", &|i| matches!(i, Texplane(_))),
         ("pplane_0_tiles", &|i| asks(i, "pplane_0_tiles(")),
         ("pplane_1_angle", &|i| asks(i, "pplane_1_angle(")),
@@ -239,7 +250,7 @@ fn what_is_not_used_is_not_there() {
         ("fn make_pixel", &|i| {
             !objects(i).is_empty()
                 && !lit(i)
-                && !matches!(i, ManyPlanes | ManySpheres | ManyTriangles)
+                && !matches!(i, ManyPlanes | ManySpheres | ManyTriangles | ManyQuadrics)
         }),
         ("switch", &|i| {
             matches!(
@@ -248,6 +259,7 @@ fn what_is_not_used_is_not_there() {
                     | TiledAlong
                     | Pplane(_)
                     | Ptriangle(_)
+                    | Pquadric(_)
                     | Texplane(_)
                     | SmallPsphere(_)
                     | WidePsphere(_)

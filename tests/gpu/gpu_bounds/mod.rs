@@ -14,6 +14,7 @@ mod lights;
 mod pictures;
 mod primary;
 mod projectors;
+mod quadrics;
 mod roundings;
 mod support;
 mod surfaces;
@@ -38,6 +39,8 @@ const DECIDED: usize = 50_000;
 /// 0.07 and more, and 0.05 and more. A bound far too large would do no harm but to speed.
 const TIGHT: f64 = 1.0 / 25.0;
 const TIGHT_LITERAL: f64 = 1.0 / 40.0;
+/// The same for quadrics, whose coefficients are sums of many terms, of which bounds take the sizes: measured is 0.029.
+const TIGHT_MOMENT: f64 = 1.0 / 80.0;
 /// Where rays, points or places are off by all that they may be, bounds are nearly reached.
 const TIGHT_OFF: f64 = 0.8;
 /// The same after several mirrors and panes, each of which may be off its own way.
@@ -95,6 +98,42 @@ fn rays_from_anywhere() {
     }
     for seen in wide {
         seen.judge(DECIDED, TIGHT_OFF);
+    }
+}
+
+#[test]
+fn rays_to_quadrics() {
+    let gpu = support::open();
+    let exact = [
+        "quadric_hits_from, exact ray",
+        "quadric_normal, exact ray",
+        "locate_secondary on quadrics",
+    ];
+    let off = [
+        "quadric_hits_from, ray off",
+        "quadric_normal, ray off",
+        "locate on quadrics, ray off",
+    ];
+    let measured = |errors, names| quadrics::measured(&gpu, str::to_owned, errors, MANY, names);
+    for seen in measured(RayErrors::Exact, exact) {
+        seen.judge(DECIDED, TIGHT_MOMENT);
+    }
+    for seen in measured(RayErrors::Off, off) {
+        seen.judge(10_000, TIGHT);
+    }
+    for name in [
+        "U",
+        "TURN",
+        "MOMENT_ROUNDINGS",
+        "GRADIENT_ROUNDINGS",
+        "QUOTIENT_GROWTH",
+    ] {
+        let without = |wgsl: &str| support::with_constant(wgsl, name, "0f");
+        let seen = [RayErrors::Exact, RayErrors::Off]
+            .map(|errors| quadrics::measured(&gpu, without, errors, MANY / 4, exact));
+        let violations: usize = seen.iter().flatten().map(BoundStatistics::violations).sum();
+        println!("{name} = 0: {violations}");
+        assert!(violations > 0, "{name} = 0 is not noticed");
     }
 }
 
@@ -265,6 +304,7 @@ fn without_a_bound() {
 /// Scenes in which bytes, edges, ties, shadows, mirrors and textures go wrong without bounds.
 const PICTURES: &[&str] = &[
     "gallery/procedural_all",
+    "gallery/quadric_chess",
     "gallery/tiles_floor",
     "hard/coincident_tiles",
     "hard/crossing_on_diagonal",

@@ -1,8 +1,8 @@
-//! Where a line meets the objects (docs/SCENE.md, "Hits"), each at most once, nearest first: all that closest hits,
-//! shadows and rays straight through ask for.
+//! Where a line meets the objects (docs/SCENE.md, "Hits"), nearest first: all that closest hits, shadows and rays
+//! straight through ask for.
 //!
-//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface.
-//! Parameters, not distances: the direction has any length.
+//! A ray that goes on through a surface stays on its line: its hits are those of the line beyond the surface, but of
+//! the object that it left last. Parameters, not distances: the direction has any length.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use plumb::scene::{Extent, Shape, Triangle};
 use super::Fault;
 use super::real::{Real, Unresolved};
 use super::vector::Vector;
-use super::world::{Body, Form, Sides, World};
+use super::world::{Body, Form, Quadric, Sides, World};
 
 /// Where a line meets an object.
 #[derive(Debug)]
@@ -21,11 +21,21 @@ pub(crate) struct Hit {
     /// Index of the object.
     pub(crate) object: usize,
     pub(crate) point: Vector,
+    /// Other objects that are met there too, all later in the file.
+    pub(crate) behind: Vec<usize>,
+}
+
+impl Hit {
+    /// The object that a ray meets here which left `last`, if any: the first in the file.
+    pub(crate) fn met(&self, last: Option<usize>) -> Option<usize> {
+        let mut objects = [self.object].into_iter().chain(self.behind.iter().copied());
+        objects.find(|object| Some(*object) != last)
+    }
 }
 
 impl World<'_> {
-    /// The hits of a line that left from the object `last`; of several at one point the first in the file. With `end`,
-    /// which is base + direction, only those before it.
+    /// The hits of a line that left from the object `last`. With `end`, which is base + direction, only those before
+    /// it.
     pub(crate) fn hits(
         &self,
         base: &Vector,
@@ -34,48 +44,131 @@ impl World<'_> {
         end: Option<&Vector>,
     ) -> Result<Vec<Hit>, Unresolved> {
         let mut hits: Vec<Hit> = Vec::new();
-        let mut crossings: Vec<Option<Option<(Real, Vector)>>> = vec![None; self.carriers];
-        if let Some(last) = last {
-            // Whatever lies on the plane or sphere that the line leaves from is met at its base, where t = 0: a miss.
-            crossings[self.bodies[last].carrier] = Some(None);
-        }
+        let mut crossings: Vec<Option<Vec<(Real, Vector)>>> = vec![None; self.carriers];
+        let left = last.map(|last| self.bodies[last].carrier);
         for (object, body) in self.bodies.iter().enumerate() {
-            let crossing = &mut crossings[body.carrier];
-            if crossing.is_none() {
-                *crossing = Some(self.crossing(body, base, direction, end)?);
-            }
-            let Some(Some((along, point))) = crossing else {
-                continue;
-            };
-            if !self.within(body, point)? {
-                continue;
-            }
-            // Objects come in file order, so a new one goes after its equals: it is left out.
-            let (mut low, mut high) = (0, hits.len());
-            let mut equal = None;
-            while low < high {
-                let middle = (low + high) / 2;
-                match along.compare(&hits[middle].along)? {
-                    Ordering::Less => high = middle,
-                    Ordering::Greater => low = middle + 1,
-                    Ordering::Equal => {
-                        equal = Some(middle);
-                        break;
+            if crossings[body.carrier].is_none() {
+                let leaves = left == Some(body.carrier);
+                let met = match &body.form {
+                    Form::Quadric(quadric) => {
+                        self.crossings(quadric, base, direction, end, leaves)?
                     }
-                }
+                    // Whatever lies on the plane or sphere that the line leaves from is met at its base, where t = 0: a
+                    // miss.
+                    Form::Plane { .. } | Form::Sphere { .. } if leaves => Vec::new(),
+                    Form::Plane { .. } | Form::Sphere { .. } => {
+                        let crossing = self.crossing(body, base, direction, end)?;
+                        crossing.into_iter().collect()
+                    }
+                };
+                crossings[body.carrier] = Some(met);
             }
-            let hit = Hit {
-                along: along.clone(),
-                object,
-                point: point.clone(),
-            };
-            match equal {
-                None => hits.insert(low, hit),
-                Some(at) if self.rules.fault == Some(Fault::LaterOfEquals) => hits[at] = hit,
-                Some(_) => {}
+            for (along, point) in crossings[body.carrier].iter().flatten() {
+                if self.within(body, point)? {
+                    self.insert(&mut hits, along, object, point)?;
+                }
             }
         }
         Ok(hits)
+    }
+
+    /// Puts a hit in its place. Objects come in file order, so a new one goes after its equals.
+    fn insert(
+        &self,
+        hits: &mut Vec<Hit>,
+        along: &Real,
+        object: usize,
+        point: &Vector,
+    ) -> Result<(), Unresolved> {
+        let (mut low, mut high) = (0, hits.len());
+        while low < high {
+            let middle = (low + high) / 2;
+            match along.compare(&hits[middle].along)? {
+                Ordering::Less => high = middle,
+                Ordering::Greater => low = middle + 1,
+                Ordering::Equal => {
+                    let equal = &mut hits[middle];
+                    if self.rules.fault == Some(Fault::LaterOfEquals) {
+                        equal.behind.insert(0, equal.object);
+                        equal.object = object;
+                    } else {
+                        equal.behind.push(object);
+                    }
+                    return Ok(());
+                }
+            }
+        }
+        let hit = Hit {
+            along: along.clone(),
+            object,
+            point: point.clone(),
+            behind: Vec::new(),
+        };
+        hits.insert(low, hit);
+        Ok(())
+    }
+
+    /// Where a line meets a quadric, borders aside; `leaves` if its base is on it.
+    fn crossings(
+        &self,
+        quadric: &Quadric,
+        base: &Vector,
+        direction: &Vector,
+        end: Option<&Vector>,
+        leaves: bool,
+    ) -> Result<Vec<(Real, Vector)>, Unresolved> {
+        // f(t) = a t² + b t + c, with f(0) = c at the base and f(1) at the end.
+        let a = direction.dot(&quadric.turned(direction));
+        let b = quadric.gradient(base).dot(direction);
+        let c = quadric.left_side(base);
+        let ends_on_it = match end {
+            Some(end) => quadric.left_side(end).is_zero()?,
+            None => false,
+        };
+        let roots = match (leaves, ends_on_it) {
+            // What is left are roots at the base and at the lamp, neither of which counts.
+            (true, true) => Vec::new(),
+            // Of two roots that one is known of, the other is −b/a − 0 or c/a over 1.
+            (true, false) if a.is_zero()? => Vec::new(),
+            (true, false) => vec![&-&b / &a],
+            (false, true) if a.is_zero()? => Vec::new(),
+            (false, true) => vec![&c / &a],
+            (false, false) if a.is_zero()? => {
+                if b.is_zero()? {
+                    Vec::new()
+                } else {
+                    vec![&-&c / &b]
+                }
+            }
+            (false, false) => {
+                let four = Real::integer(4);
+                let discriminant = &b.square() - &(&four * &(&a * &c));
+                let twice = &a + &a;
+                match discriminant.sign()? {
+                    Ordering::Greater => {
+                        let root = discriminant.sqrt();
+                        let sum = &-&b + &root;
+                        vec![&(&-&b - &root) / &twice, &sum / &twice]
+                    }
+                    Ordering::Equal if self.rules.fault == Some(Fault::TangentHits) => {
+                        vec![&-&b / &twice]
+                    }
+                    Ordering::Equal | Ordering::Less => Vec::new(),
+                }
+            }
+        };
+        let mut met = Vec::new();
+        for along in roots {
+            let before = end.is_none() || along.compare(&Real::integer(1))? == Ordering::Less;
+            if !before || !along.is_positive()? {
+                continue;
+            }
+            let hit = base + &direction.scale(&along);
+            if hit.0[2].compare(&self.tolerance)? != Ordering::Greater {
+                met.push((along, hit));
+            }
+        }
+        Ok(met)
     }
 
     /// Where a line meets the plane or sphere that an object lies on, as parameter and point.
@@ -87,6 +180,7 @@ impl World<'_> {
         end: Option<&Vector>,
     ) -> Result<Option<(Real, Vector)>, Unresolved> {
         match &body.form {
+            Form::Quadric(_) => panic!("a quadric may be met twice"),
             Form::Plane {
                 normal,
                 point,
@@ -164,8 +258,19 @@ impl World<'_> {
         }
     }
 
-    /// Whether a point of the plane that an object lies on is the object's: a rectangle ends.
+    /// Whether a point of the surface that an object lies on is the object's: a rectangle ends, and a quadric may be
+    /// cut.
     fn within(&self, body: &Body<'_>, hit: &Vector) -> Result<bool, Unresolved> {
+        for (axis, least, border) in &body.borders {
+            let beyond = if *least {
+                Ordering::Less
+            } else {
+                Ordering::Greater
+            };
+            if hit.0[*axis].compare(border)? == beyond {
+                return Ok(false);
+            }
+        }
         match body.object.shape {
             Shape::Plane {
                 extent: Extent::Rectangle(_),

@@ -1,7 +1,7 @@
 //! What a surface reflects at a hit (docs/SCENE.md, "What a surface reflects").
 
 use dashu_int::IBig;
-use plumb::scene::{Surface, TextureMode};
+use plumb::scene::{Shape, Surface, TextureMode};
 
 use super::real::{Real, Unresolved};
 use super::vector::Vector;
@@ -77,11 +77,11 @@ impl World<'_> {
             let ambient = &self.tile(body, hit)?.ambient;
             return self.textured(body, hit, ambient);
         };
-        let point = match &body.form {
-            Form::Plane { point, .. } => point,
-            Form::Sphere { center, .. } => center,
+        let from = match (&body.object.shape, &body.form) {
+            (Shape::Quadric(_), _) | (_, Form::Quadric(_)) => hit.clone(),
+            (_, Form::Plane { point, .. }) => hit - point,
+            (_, Form::Sphere { center, .. }) => hit - center,
         };
-        let from = hit - point;
         let [x, y, _] = &from.0;
         if let Form::Sphere { .. } = body.form {
             let y = if y.is_positive()? { -y } else { y.clone() };

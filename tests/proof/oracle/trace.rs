@@ -109,7 +109,7 @@ impl World<'_> {
             before: way.before,
             mirrors: way.mirrors,
         };
-        self.follow(&line, 0, base, rays)
+        self.follow(&line, 0, way.last, base, rays)
     }
 
     /// Whether a ray that starts after this path is followed.
@@ -121,11 +121,12 @@ impl World<'_> {
         })
     }
 
-    /// The colour of what remains of a line from its hit number `next`; it comes from `base`.
+    /// The colour of what remains of a line from its hit number `next`; it comes from `base`, which is on `last`.
     fn follow(
         &self,
         line: &Line,
         next: usize,
+        last: Option<usize>,
         base: &Vector,
         rays: &Cell<u32>,
     ) -> Result<Vector, Failure> {
@@ -133,10 +134,14 @@ impl World<'_> {
         if rays.get() > self.rules.max_rays || line.mirrors > self.rules.max_mirrors {
             return Err(Failure::TooManyRays);
         }
-        let Some(hit) = line.hits.get(next) else {
+        let rest = line.hits.iter().enumerate().skip(next);
+        let Some((next, hit, object)) = rest
+            .filter_map(|(i, hit)| Some((i, hit, hit.met(last)?)))
+            .next()
+        else {
             return Ok(Vector::all(0));
         };
-        let body = &self.bodies[hit.object];
+        let body = &self.bodies[object];
         let stuff = self.stuff(body);
         let total = &line.before + &(&hit.along * &line.length);
         let share = &Real::integer(1) / &total;
@@ -146,7 +151,7 @@ impl World<'_> {
         }
         let normal = normal(body, &hit.point);
         for lamp in &self.lamps {
-            if let Some(term) = self.light(lamp, hit, base, &normal)? {
+            if let Some(term) = self.light(lamp, object, &hit.point, base, &normal)? {
                 colour = &colour + &term;
             }
         }
@@ -156,7 +161,7 @@ impl World<'_> {
             colour = colour.scale(&stuff.opacity);
             if self.within_path(&total)? {
                 let tint = &self.tile(body, &hit.point)?.tint;
-                let through = self.follow(line, next + 1, &hit.point, rays)?;
+                let through = self.follow(line, next + 1, Some(object), &hit.point, rays)?;
                 colour = &colour + &through.times(tint).scale(&stuff.transparency);
             }
         }
@@ -171,7 +176,7 @@ impl World<'_> {
                 line.length.clone(),
                 Way {
                     before: total.clone(),
-                    last: Some(hit.object),
+                    last: Some(object),
                     mirrors: line.mirrors + 1,
                 },
                 rays,
@@ -185,16 +190,17 @@ impl World<'_> {
     fn light(
         &self,
         lamp: &Lamp,
-        hit: &Hit,
+        object: usize,
+        hit: &Vector,
         base: &Vector,
         normal: &Vector,
     ) -> Result<Option<Vector>, Failure> {
-        let body = &self.bodies[hit.object];
-        let to_lamp = &lamp.location - &hit.point;
+        let body = &self.bodies[object];
+        let to_lamp = &lamp.location - hit;
         let facing = match &body.form {
             // N·H is N·Q, which needs no hit.
             Form::Plane { normal, point, .. } => (&lamp.location - point).dot(normal),
-            Form::Sphere { .. } => to_lamp.dot(normal),
+            Form::Sphere { .. } | Form::Quadric(_) => to_lamp.dot(normal),
         };
         // Also where the light is at the hit: then this is 0.
         if !facing.is_positive()? {
@@ -210,25 +216,24 @@ impl World<'_> {
                 return Ok(None);
             }
         }
-        let Some(emissivity) = self.emissivity(lamp, hit)? else {
+        let Some(emissivity) = self.emissivity(lamp, object, hit)? else {
             return Ok(None);
         };
-        let Some(transmittance) = self.shadow(&hit.point, &to_lamp, &lamp.location, hit.object)?
-        else {
+        let Some(transmittance) = self.shadow(hit, &to_lamp, &lamp.location, object)? else {
             return Ok(None);
         };
         // E·c/dist = E·(L·N)/(|N|·L·L)
         let size = normal.dot(normal).sqrt();
         let light = &facing / &(&size * &square);
         let mut term = self
-            .diffuse(body, &hit.point)?
+            .diffuse(body, hit)?
             .times(&emissivity)
             .times(&transmittance)
             .scale(&light);
         let material = &self.scene.materials[body.object.material];
         if material.shininess != 0.0 && material.specular != glam::DVec3::ZERO {
             // With unit u = (base − H)/|base − H| and d = L/|L|: h·N = (u·N + d·N)/(|u + d|·|N|).
-            let to_base = base - &hit.point;
+            let to_base = base - hit;
             let far = to_base.dot(&to_base).sqrt();
             let dist = square.sqrt();
             let both = &(&to_base.dot(normal) / &far) + &(&facing / &dist);
@@ -249,16 +254,21 @@ impl World<'_> {
     }
 
     /// How bright a lamp is for a hit: a projector's light has to pass its picture, and takes its colour.
-    fn emissivity(&self, lamp: &Lamp, hit: &Hit) -> Result<Option<Vector>, Failure> {
+    fn emissivity(
+        &self,
+        lamp: &Lamp,
+        object: usize,
+        hit: &Vector,
+    ) -> Result<Option<Vector>, Failure> {
         let Some(slide) = &lamp.slide else {
             return Ok(Some(lamp.emissivity.clone()));
         };
         // On the picture's own plane N·H is N·Q, which needs no hit: f = 1.
-        if slide.carrier == Some(self.bodies[hit.object].carrier) {
+        if slide.carrier == Some(self.bodies[object].carrier) {
             return Ok(None);
         }
         let over = (&slide.point - &lamp.location).dot(&slide.normal).settled();
-        let way = &hit.point - &lamp.location;
+        let way = hit - &lamp.location;
         let under = way.dot(&slide.normal);
         // Where the segment is parallel to the plane f is not defined; where the lamp lies in it, f is 0.
         if over.is_zero()? || under.is_zero()? {
@@ -288,8 +298,13 @@ impl World<'_> {
         last: usize,
     ) -> Result<Option<Vector>, Failure> {
         let mut transmittance = Vector::all(1);
+        let mut last = last;
         for blocker in self.hits(from, to_lamp, Some(last), Some(lamp))? {
-            let body = &self.bodies[blocker.object];
+            let Some(object) = blocker.met(Some(last)) else {
+                continue;
+            };
+            last = object;
+            let body = &self.bodies[object];
             if self.scene.materials[body.object.material].transparency == 0.0 {
                 return Ok(None);
             }
@@ -308,5 +323,6 @@ fn normal(body: &Body<'_>, hit: &Vector) -> Vector {
     match &body.form {
         Form::Plane { normal, .. } => normal.clone(),
         Form::Sphere { center, .. } => hit - center,
+        Form::Quadric(quadric) => quadric.gradient(hit),
     }
 }

@@ -42,6 +42,8 @@ pub(crate) struct Body<'s> {
     pub(crate) carrier: usize,
     /// The sides that tiles or a texture follow, or that bound a rectangle.
     pub(crate) sides: Option<Sides>,
+    /// Where a quadric is cut: the axis, whether hits are not to be below or not above, and the coordinate.
+    pub(crate) borders: Vec<(usize, bool, Real)>,
 }
 
 /// Where an object is.
@@ -60,6 +62,48 @@ pub(crate) enum Form {
         /// r².
         square: Real,
     },
+    Quadric(Quadric),
+}
+
+/// H·(M H) + slope·H = constant.
+#[derive(Debug)]
+pub(crate) struct Quadric {
+    rows: [Vector; 3],
+    slope: Vector,
+    constant: Real,
+}
+
+impl Quadric {
+    fn new(coefficients: &[f64; 10]) -> Self {
+        let [a, b, c, d, e, f, g, h, i, j] = coefficients.map(Real::from_f64);
+        let half = |x: Real| (&x / &Real::integer(2)).settled();
+        let [d, e, f] = [half(d), half(e), half(f)];
+        Self {
+            rows: [
+                Vector([a, d.clone(), e.clone()]),
+                Vector([d, b, f.clone()]),
+                Vector([e, f, c]),
+            ],
+            slope: Vector([g, h, i]),
+            constant: j,
+        }
+    }
+
+    /// M v.
+    pub(crate) fn turned(&self, v: &Vector) -> Vector {
+        Vector(self.rows.each_ref().map(|row| row.dot(v)))
+    }
+
+    /// The gradient of the left side.
+    pub(crate) fn gradient(&self, at: &Vector) -> Vector {
+        &self.turned(at).scale(&Real::integer(2)) + &self.slope
+    }
+
+    /// The left side less the constant: 0 on the surface.
+    pub(crate) fn left_side(&self, at: &Vector) -> Real {
+        let left = &at.dot(&self.turned(at)) + &self.slope.dot(at);
+        (&left - &self.constant).settled()
+    }
 }
 
 /// Two directions in a plane at a right angle, of any length.
@@ -146,17 +190,17 @@ impl<'s> World<'s> {
     }
 }
 
-/// Numbers of the planes and spheres that objects lie on.
-type Carriers = HashMap<(bool, [RBig; 4]), usize>;
+/// Numbers of the planes, spheres and quadrics that objects lie on.
+type Carriers = HashMap<(u8, Vec<RBig>), usize>;
 
-/// What is the same for shapes on the same plane or sphere, and for no others.
-fn carrier(shape: &Shape) -> (bool, [RBig; 4]) {
+/// What is the same for shapes on the same plane, sphere or quadric, and for no others; but a quadric is no sphere.
+fn carrier(shape: &Shape) -> (u8, Vec<RBig>) {
     let exact = |v: DVec3| v.to_array().map(|c| RBig::try_from(c).expect("finite"));
     match *shape {
         Shape::Sphere { center, radius } => {
             let [x, y, z] = exact(center);
             let radius = RBig::try_from(radius).expect("finite");
-            (true, [x, y, z, radius])
+            (1, vec![x, y, z, radius])
         }
         Shape::Plane { normal, point, .. } => {
             let ([a, b, c], [x, y, z]) = (exact(normal), exact(point));
@@ -164,7 +208,7 @@ fn carrier(shape: &Shape) -> (bool, [RBig; 4]) {
             let numbers = [a, b, c, offset];
             let first = numbers.iter().find(|n| !n.is_zero()).cloned();
             let first = first.expect("a normal is not zero");
-            (false, numbers.map(|n| n / &first))
+            (0, numbers.map(|n| n / &first).to_vec())
         }
         Shape::Triangle(Triangle { vertices, .. }) => {
             let [v1, v2, v3] = vertices.map(exact);
@@ -175,9 +219,19 @@ fn carrier(shape: &Shape) -> (bool, [RBig; 4]) {
             let numbers = [x, y, z, offset];
             let first = numbers.iter().find(|n| !n.is_zero()).cloned();
             let first = first.expect("vertices are not in a line");
-            (false, numbers.map(|n| n / &first))
+            (0, numbers.map(|n| n / &first).to_vec())
         }
-        Shape::Quadric(_) => panic!("no scene has a quadric yet"),
+        Shape::Quadric(scene::Quadric { coefficients, .. }) => {
+            let numbers = coefficients.map(|c| RBig::try_from(c).expect("finite"));
+            let first = numbers.iter().find(|n| !n.is_zero()).cloned();
+            let first = first.expect("of A to I one is not zero");
+            let [a, b, c, d, e, f, rest @ ..] = numbers.map(|n| n / &first);
+            if [&a, &b, &c, &d, &e, &f].iter().all(|n| n.is_zero()) {
+                (0, rest.to_vec())
+            } else {
+                (2, [vec![a, b, c, d, e, f], rest.to_vec()].concat())
+            }
+        }
     }
 }
 
@@ -191,6 +245,7 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
                 square: Real::from_f64(radius).square().settled(),
             },
             sides: None,
+            borders: Vec::new(),
         },
         Shape::Triangle(Triangle {
             vertices,
@@ -215,6 +270,7 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
                 object,
                 carrier,
                 sides: None,
+                borders: Vec::new(),
                 form: Form::Plane {
                     normal,
                     point: Vector::from_f64(vertices[0]),
@@ -222,7 +278,13 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
                 },
             }
         }
-        Shape::Quadric(_) => panic!("no scene has a quadric yet"),
+        Shape::Quadric(quadric) => Body {
+            object,
+            carrier,
+            form: quadric_form(&quadric),
+            sides: None,
+            borders: borders(&quadric),
+        },
         Shape::Plane {
             normal,
             point,
@@ -249,6 +311,7 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
             Body {
                 object,
                 carrier,
+                borders: Vec::new(),
                 sides: along.map(|(xdir, dimensions)| sides(&normal, xdir, dimensions)),
                 form: Form::Plane {
                     normal,
@@ -258,6 +321,35 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
             }
         }
     }
+}
+
+/// A quadric's surface; one without squares is a plane.
+fn quadric_form(quadric: &scene::Quadric) -> Form {
+    let [a, b, c, d, e, f, g, h, i, j] = quadric.coefficients;
+    if [a, b, c, d, e, f] != [0.0; 6] {
+        return Form::Quadric(Quadric::new(&quadric.coefficients));
+    }
+    let normal = Vector::from_f64(DVec3::new(g, h, i));
+    // N·J/(N·N) is on it.
+    let part = &Real::from_f64(j) / &normal.dot(&normal);
+    let mut coordinates = (0..3).filter(|i| quadric.coefficients[6 + i] != 0.0);
+    let axis = coordinates.next().filter(|_| coordinates.next().is_none());
+    Form::Plane {
+        point: normal.scale(&part).settled(),
+        normal,
+        axis,
+    }
+}
+
+/// Where a quadric is cut.
+fn borders(quadric: &scene::Quadric) -> Vec<(usize, bool, Real)> {
+    let sides = [(true, quadric.lower), (false, quadric.upper)];
+    let given = sides
+        .into_iter()
+        .filter_map(|(least, side)| Some((least, side?)));
+    given
+        .flat_map(|(least, side)| [0, 1, 2].map(|axis| (axis, least, Real::from_f64(side[axis]))))
+        .collect()
 }
 
 /// xdir − (N·xdir)N for a unit N is, times N·N, (N·N)xdir − (N·xdir)N for any.

@@ -7,6 +7,7 @@
 //! is made as small as it gets and printed as text.
 
 mod motifs;
+mod quadrics;
 mod strategy;
 mod triangles;
 

@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 use proptest::sample::select;
 
+use super::quadrics::quadrics;
 use super::strategy::{
     Point, ball, cross, hair, light, material, moved, nearly, normal, place, plane, point, radius,
     show,
@@ -28,6 +29,7 @@ pub(super) fn objects() -> BoxedStrategy<String> {
         4 => room(),
         2 => slanted_mirror(),
         2 => lantern(),
+        4 => quadrics(),
     ]
     .boxed()
 }
