@@ -150,7 +150,8 @@ impl<'a, R: Real> Tree<'a, R> {
     /// What a ray and all that it leaves may bring, in each channel: weight·X/path, with the scene's own X.
     fn most(&self, last: Option<u32>, weight: V3<R>, counts: [bool; 3], total: R) -> [f64; 3] {
         let brightest = self.world.brightest.leaving(last);
-        let least = total.quick_enclosure();
+        // After some mirrors the first enclosure may be too wide to say anything, and no ray would be faint.
+        let least = total.enclosure();
         let least = (least.value - least.error * Bounded::GROW) * two_to(self.scene.camera.scale);
         let weight = [weight.x, weight.y, weight.z].map(|w| {
             let Bounded { value, error } = w.quick_enclosure();
