@@ -149,7 +149,7 @@ impl<'a, R: Real> Tree<'a, R> {
 
     /// What a ray and all that it leaves may bring, in each channel: weight·X/path, with the scene's own X.
     fn most(&self, last: Option<u32>, weight: V3<R>, counts: [bool; 3], total: R) -> [f64; 3] {
-        let brightest = self.world.brightest.leaving(last);
+        let brightest = self.world.brightest.leaving(last, self.limits.max_rays);
         // After some mirrors the first enclosure may be too wide to say anything, and no ray would be faint.
         let least = total.enclosure();
         let least = (least.value - least.error * Bounded::GROW) * two_to(self.scene.camera.scale);
