@@ -239,6 +239,7 @@ impl Arena {
                 continue;
             }
             self.words += bits / 64;
+            self.work += bits as u64 / 64;
             let ball = self.compute(i, bits);
             let node = &mut self.nodes[i as usize];
             if let Some(ball) = &ball {
@@ -309,6 +310,9 @@ impl Arena {
                 waiting.extend(operands(&node.op).into_iter().flatten());
             }
         }
+        // Of a large expression that is asked about often, looking takes as long as computing.
+        self.words += found.len() / 4;
+        self.work += found.len() as u64 / 4;
         found.sort_unstable();
         found
     }
@@ -336,13 +340,16 @@ impl Arena {
     fn exact(&mut self, x: Lazy, most: usize, work: usize) -> Result<Element, TooHard> {
         let others = self.tower.height() > 0;
         let most_now = most.max(self.tower.height().min(MOST_ROOTS));
-        match self.try_exact(x.0, most_now, work) {
-            Err(TooHard::Roots | TooHard::Size) if others => {
-                self.new_tower();
-                self.try_exact(x.0, most, work)
-            }
-            result => result,
+        self.tower.begin(work);
+        let mut result = self.try_exact(x.0, most_now);
+        self.work += (work - self.tower.left()) as u64;
+        if others && matches!(result, Err(TooHard::Roots | TooHard::Size)) {
+            self.new_tower();
+            self.tower.begin(work);
+            result = self.try_exact(x.0, most);
+            self.work += (work - self.tower.left()) as u64;
         }
+        result
     }
 
     fn exactly(&self, i: u32) -> Option<&Element> {
@@ -350,8 +357,7 @@ impl Arena {
         (*tower == self.towers || value.is_rational()).then_some(value)
     }
 
-    fn try_exact(&mut self, root: u32, most: usize, work: usize) -> Result<Element, TooHard> {
-        self.tower.begin(work);
+    fn try_exact(&mut self, root: u32, most: usize) -> Result<Element, TooHard> {
         let mut waiting = vec![root];
         while let Some(&i) = waiting.last() {
             if self.exactly(i).is_some() {

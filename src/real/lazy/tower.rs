@@ -146,6 +146,11 @@ impl Tower {
         self.left.set(work);
     }
 
+    /// How many may still be made.
+    pub(super) fn left(&self) -> usize {
+        self.left.get()
+    }
+
     /// Counts the sum of two numbers, which is made without the tower.
     pub(super) fn spend_sum(&self, x: &Element, y: &Element) -> Result<(), TooHard> {
         match (x, y) {

@@ -115,14 +115,14 @@ fn after(gpu: &Gpu, world: &World, wgsl: &str, panes: bool) -> BoundStatistics {
     }}
     answers[i] = vec4f(branch.weight, branch.weight_error);"
     );
+    // What tints panes.
     let inputs = [
         (2, bytemuck::cast_slice(&lit.objects)),
         (8, bytemuck::cast_slice(&world.packed.tiled_planes)),
         (12, bytemuck::cast_slice(&lit.materials)),
-        (14, bytemuck::cast_slice(&lit.planes)),
-        (15, bytemuck::cast_slice(&lit.spheres)),
     ];
-    let answers = run(gpu, wgsl, &body, &items, &inputs, count, 1);
+    let inputs = if panes { &inputs[..] } else { &[] };
+    let answers = run(gpu, wgsl, &body, &items, inputs, count, 1);
     let name = if panes {
         "weights after panes"
     } else {

@@ -50,6 +50,9 @@ pub(super) const EXPONENTS: [i32; 24] = [
 /// The same around the ends of what the GPU's records hold, 2^±40, so that it renders most of these scenes itself.
 const OF_RECORDS: [i32; 12] = [-12, -11, -10, -9, -7, -4, -2, 3, 6, 9, 11, 12];
 
+/// Of what is multiplied along a path, and may not come to too much.
+const OF_FACTORS: [i32; 9] = [-12, -11, -10, -9, -7, -4, -2, 1, 3];
+
 /// The exponents of a scene's numbers: those of every second scene leave it to the GPU.
 pub(super) fn exponents(number: u64) -> &'static [i32] {
     if for_the_gpu(number) {
@@ -189,6 +192,11 @@ pub(super) fn case(kind: SurfaceKind, number: u64) -> Case {
         }
         SurfaceKind::Spots => case.text = spots(random, exponents),
         SurfaceKind::Stuff => {
+            let exponents = if for_the_gpu(number) {
+                &OF_FACTORS
+            } else {
+                exponents
+            };
             case.text = stuff(random, exponents);
             case.max_path = random.one(&[20.0, 40.0]);
         }

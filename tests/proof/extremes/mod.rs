@@ -11,6 +11,7 @@ mod lamps;
 mod random;
 mod same;
 mod trees;
+mod work;
 
 use crate::common;
 use plumb::render::{Backend, Settings, render};

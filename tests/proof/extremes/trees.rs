@@ -13,8 +13,8 @@ use crate::oracle::{self, Rules, differences};
 
 /// Rays followed, and rays that those stand for.
 #[derive(Default)]
-struct Followed {
-    rays: u64,
+pub(super) struct Followed {
+    pub(super) rays: u64,
     counted: u64,
 }
 
