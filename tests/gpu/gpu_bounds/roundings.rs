@@ -143,6 +143,15 @@ const COUNTED: &[Counted] = &[
         truth: |[_, b, c]| (c * (b * c.x), (c * (b * c.x)).length()),
     },
     Counted {
+        constant: "SHARE_ROUNDINGS",
+        wgsl: "a * (b * (c.x / c.y * c.z))",
+        operands: any,
+        truth: |[a, b, c]| {
+            let value = a * b * (c.x / c.y * c.z);
+            (value, value.length())
+        },
+    },
+    Counted {
         constant: "PATH_ROUNDINGS",
         wgsl: "vec3f(c.x - c.y, 0.0, 0.0)",
         operands: nearly_a_path,
