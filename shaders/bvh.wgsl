@@ -1,4 +1,4 @@
-// The tree over many spheres: which of them a ray may hit. Referee: src/cpu/bvh.rs.
+// The trees over many spheres and over many triangles: which of them a ray may hit. Referee: src/cpu/bvh.rs.
 
 //#insert struct BvhNode
 
@@ -35,9 +35,10 @@ struct Walk {
     stack: array<u32, BVH_DEPTH>,
 }
 
-// Begins at the root.
-fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
+// Begins at the root of a tree.
+fn bvh_begin(base: vec3f, dir: vec3f, root: u32) -> Walk {
     var walk: Walk;
+    walk.index = root;
     walk.base = base;
     // A zero component becomes tiny: the ray stays in its slab or out of it.
     walk.inverse = 1.0 / select(dir, vec3f(1e-20), abs(dir) < vec3f(1e-20));
@@ -48,7 +49,8 @@ fn bvh_begin(base: vec3f, dir: vec3f) -> Walk {
 
 // Widens the boxes by as much as the ray may be off where it meets them.
 fn bvh_widen(walk: ptr<function, Walk>, ray: SecondaryRay) {
-    (*walk).pad = SECOND_ORDER * (ray.base_error + ray.start_error + ray.dir_error * (ray.size + BVH_SIZE))
+    let moved = ray.base_error + ray.start_error;
+    (*walk).pad = SECOND_ORDER * (moved + ray.dir_error * (ray.size + BVH_SIZE + moved))
         + BOX_ROUNDINGS * U * (ray.size + BVH_SIZE);
 }
 //#end

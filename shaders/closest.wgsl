@@ -75,9 +75,9 @@ fn nearer(closest: ptr<function, Hit>, intersection: PrimaryIntersection, object
 fn find_closest_object(ray: Ray) -> Hit {
     var closest: Hit;
 //#insert unrolled
-//#if rectangle_loop
-    for (var i = 0u; i < RECTANGLES; i += 1u) {
-        nearer(&closest, rectangle_hits(rectangles[i], ray), rectangles[i].object, i, rectangles[i].group);
+//#if polygon_loop
+    for (var i = 0u; i < POLYGONS; i += 1u) {
+        nearer(&closest, polygon_hits(polygons[i], ray), polygons[i].object, i, polygons[i].group);
     }
 //#end
 //#if plane_loop
@@ -102,17 +102,31 @@ fn find_closest_object(ray: Ray) -> Hit {
     var place = first;
     for (; place < last; place += 1u) {
         let index = screen_grid[place];
-        let sphere = sphere_at(index);
 //#if certified
         let least = closest.inverse - closest.error;
 //#else
         let least = closest.inverse;
 //#end
+//#if grid_triangles
+        if index >= GRID_SPHERES {
+            let polygon = polygons[LOOSE_POLYGONS + index - GRID_SPHERES];
+            if polygon.max_inverse < least {
+                closest.decided = true;
+                break;
+            }
+            // Triangles of a cell are not in the order of the file, so that none stands for others on its plane.
+            nearer(&closest, polygon_hits(polygon, ray), polygon.object, index, 0u);
+            continue;
+        }
+//#end
+//#if grid_spheres
+        let sphere = sphere_at(index);
         if sphere.max_inverse < least {
             closest.decided = true;
             break;
         }
         nearer(&closest, sphere_hits(sphere, ray), sphere.object, index, 0u);
+//#end
     }
     steps += LANES * (place - first + 1u);
 //#end

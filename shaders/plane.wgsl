@@ -1,5 +1,5 @@
-// Planes and rectangles of planes. Twin of what primary rays ask, the same in f32 on the CPU: src/certify/lanes/mod.rs.
-// Referee: src/cpu/plane.rs.
+// Planes, and rectangles and triangles of planes. Twin of what primary rays ask, the same in f32 on the CPU:
+// src/certify/lanes/mod.rs. Referee: src/cpu/plane.rs.
 //
 // What is called for each object has neither branches with two arms nor && and ||, which are such branches: a compiler
 // was seen to take twice as long for each of them that stands in a loop (docs/BENCH.md).
@@ -28,39 +28,42 @@ fn plane_hits(plane: Plane, ray: Ray) -> PrimaryIntersection {
     return intersection;
 }
 //#end
-//#if rectangle
+//#if polygon
 
-//#insert struct Rectangle
+//#insert struct Polygon
 
-// The rectangle as a primary ray meets it.
-fn rectangle_hits(rectangle: Rectangle, ray: Ray) -> PrimaryIntersection {
+// The rectangle or triangle as a primary ray meets it.
+fn polygon_hits(polygon: Polygon, ray: Ray) -> PrimaryIntersection {
     let at = vec3f(from_pixel(ray, CAMERA_ANCHOR), 1.0);
-    let sides = vec4f(dot(rectangle.side_0, at), dot(rectangle.side_1, at), dot(rectangle.side_2, at),
-        dot(rectangle.side_3, at));
+    let sides = vec4f(dot(polygon.side_0, at), dot(polygon.side_1, at), dot(polygon.side_2, at),
+        dot(polygon.side_3, at));
     var intersection: PrimaryIntersection;
-    intersection.inverse = dot(rectangle.inverse, at);
+    intersection.inverse = dot(polygon.inverse, at);
 //#if certified
-    intersection.hit = all(sides > rectangle.side_errors);
-    intersection.possible = all(sides > -rectangle.side_errors);
+    intersection.hit = all(sides > polygon.side_errors);
+    intersection.possible = all(sides > -polygon.side_errors);
 //#else
     intersection.hit = all(sides >= vec4f(0.0));
 //#end
 //#if front
-    let side = dot(rectangle.front, at);
+    let side = dot(polygon.front, at);
 //#if certified
-    intersection.hit &= side > rectangle.front_error;
-    intersection.possible &= side > -rectangle.front_error;
+    intersection.hit &= side > polygon.front_error;
+    intersection.possible &= side > -polygon.front_error;
 //#else
     intersection.hit &= side >= 0.0;
 //#end
 //#end
-    intersection.error = rectangle.inverse_error; //~
+    intersection.error = polygon.inverse_error; //~
     return intersection;
 }
 //#end
 //#if lit
 
 //#insert struct WorldPlane
+//#if triangle_anywhere
+//#insert struct ThirdSide
+//#end
 
 // The plane as a ray from anywhere meets it.
 fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Intersection {
@@ -98,10 +101,16 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let below = plane.highest - position.z;
     out |= in & (below < -position_error);
     var inside = below > position_error;
-//#if rectangle_anywhere
+//#if sides_anywhere
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
-        let margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
+        var margin = min(min(p.x, p.y), min(plane.lengths.x - p.x, plane.lengths.y - p.y));
+//#if triangle_anywhere
+        if plane.bounded > 1u {
+            let third = third_sides[plane.bounded - 2u];
+            margin = min(margin, dot(third.row, position) - third.origin);
+        }
+//#end
         let margin_error = SECOND_ORDER * position_error + plane.sides_error
             + PLANE_ROUNDINGS * U * (ray.size + abs(t));
         out |= in & (margin < -margin_error);
@@ -115,10 +124,16 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     // A light in the plane is where the ray meets it: at the light, not before.
     intersection.hit = (t > 0.0) & (position.z <= plane.highest) & (plane.group != range.skip)
         & ((plane.lights_on_surface & range.light) == 0u);
-//#if rectangle_anywhere
+//#if sides_anywhere
     if plane.bounded != 0u {
         let p = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
         intersection.hit &= all(p >= vec2f(0.0)) & all(p <= plane.lengths);
+//#if triangle_anywhere
+        if plane.bounded > 1u {
+            let third = third_sides[plane.bounded - 2u];
+            intersection.hit &= dot(third.row, position) >= third.origin;
+        }
+//#end
     }
 //#end
 //#end

@@ -99,7 +99,7 @@ fn closest_approach(center: vec3f, radius: f32, size: f32, ray: SecondaryRay) ->
     approach.perpendicular = barrier(to_center - approach.along * ray.dir);
     approach.apart = dot(approach.perpendicular, approach.perpendicular);
 //#if certified
-    let far = abs(approach.along) + radius;
+    let far = abs(approach.along) + radius + ray.base_error;
     approach.off = SECOND_ORDER * ray.base_error + U * size
         + far * ((TURN + TURN_MORE * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
 //#end

@@ -72,7 +72,12 @@ const T_MAX = 1e30f;
 fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersection, object: u32, group: u32,
     range: Range) {
 //#if certified
+//#if triangle_tree
+    // What the tree holds is not in the order of the file: what comes before the closest on its surface is a rival.
+    let fresh = (group != (*closest).group) | (object < (*closest).object);
+//#else
     let fresh = group != (*closest).group;
+//#end
     var hit = intersection.hit & fresh;
     var possible = intersection.possible & fresh;
 //#if transparent
@@ -127,8 +132,8 @@ fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
             world_spheres[i].group, range);
     }
 //#end
-//#if bvh
-    var walk = bvh_begin(ray.base, ray.dir);
+//#if sphere_tree
+    var walk = bvh_begin(ray.base, ray.dir, 0u);
     bvh_widen(&walk, ray); //~
     loop {
         let node = bvh[walk.index];
@@ -147,6 +152,31 @@ fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
         }
 //#else
         if !bvh_next(&walk, closest.t) {
+            break;
+        }
+//#end
+    }
+//#end
+//#if triangle_tree
+    var triangle_walk = bvh_begin(ray.base, ray.dir, TRIANGLE_ROOT);
+    bvh_widen(&triangle_walk, ray); //~
+    loop {
+        let node = bvh[triangle_walk.index];
+        steps += LANES * (2u + node.count);
+        if steps > STEPS_LIMIT {
+            break;
+        }
+        for (var i = node.first; i < node.first + node.count; i += 1u) {
+            nearer_secondary(&closest, plane_hits_from(world_planes[i], ray, range), world_planes[i].object,
+                world_planes[i].group, range);
+        }
+//#if certified
+        // What is truly nearer than the closest is entered before it.
+        if !bvh_next(&triangle_walk, min(closest.t + closest.error, range.limit + range.limit_error)) {
+            break;
+        }
+//#else
+        if !bvh_next(&triangle_walk, closest.t) {
             break;
         }
 //#end
@@ -184,11 +214,11 @@ fn any_hit(ray: SecondaryRay, range: Range) -> u32 {
         found = max(found, occludes(sphere_hits_from(world_spheres[i], ray, range), range));
     }
 //#end
-//#if bvh
+//#if sphere_tree
     if found == 2u {
         return found;
     }
-    var walk = bvh_begin(ray.base, ray.dir);
+    var walk = bvh_begin(ray.base, ray.dir, 0u);
     bvh_widen(&walk, ray); //~
     loop {
         let node = bvh[walk.index];
@@ -205,6 +235,32 @@ fn any_hit(ray: SecondaryRay, range: Range) -> u32 {
         }
 //#else
         if found == 2u || !bvh_next(&walk, range.limit) {
+            break;
+        }
+//#end
+    }
+//#end
+//#if triangle_tree
+    if found == 2u {
+        return found;
+    }
+    var triangle_walk = bvh_begin(ray.base, ray.dir, TRIANGLE_ROOT);
+    bvh_widen(&triangle_walk, ray); //~
+    loop {
+        let node = bvh[triangle_walk.index];
+        steps += LANES * (2u + node.count);
+        if steps > STEPS_LIMIT {
+            return 2u;
+        }
+        for (var i = node.first; (i < node.first + node.count) & (found != 2u); i += 1u) {
+            found = max(found, occludes(plane_hits_from(world_planes[i], ray, range), range));
+        }
+//#if certified
+        if found == 2u || !bvh_next(&triangle_walk, range.limit + range.limit_error) {
+            break;
+        }
+//#else
+        if found == 2u || !bvh_next(&triangle_walk, range.limit) {
             break;
         }
 //#end

@@ -9,7 +9,7 @@ use super::trace::Hit;
 use crate::prepare::Prepared;
 use crate::real::Real;
 use crate::real::rational::two_to;
-use crate::scene::{Scene, Shape};
+use crate::scene::{Scene, Shape, Triangle};
 
 /// Where a primary ray hits, in world coordinates.
 ///
@@ -33,6 +33,16 @@ pub fn hit_point<R: Real>(
             }
             at
         }
+        Shape::Triangle(Triangle { vertices, .. }) => {
+            let mut at = along();
+            for axis in 0..3 {
+                if vertices.iter().all(|v| v[axis] == vertices[0][axis]) {
+                    at[axis] = vertices[0][axis];
+                }
+            }
+            at
+        }
+        Shape::Quadric(_) => along(),
         Shape::Sphere { center, .. } => {
             let sphere = prepared.spheres.get(hit.index).copied();
             let sphere = sphere.or_else(|| prepared.make_sphere(hit.index));

@@ -33,11 +33,12 @@ pub enum Lit<R> {
 
 /// The unit normal at a hit point, as the scene gives it or outward.
 pub fn normal_at<R: Real>(world: &World<R>, is_plane: bool, point: &Point<R>) -> V3<R> {
-    if is_plane {
-        world.planes[world.places[point.object]].normal
+    let plane = if is_plane {
+        world.plane_of(point.object)
     } else {
-        point.from_center.unit()
-    }
+        None
+    };
+    plane.map_or_else(|| point.from_center.unit(), |plane| plane.normal)
 }
 
 /// What light number `number` brings to a point with unit normal `normal`, seen by a ray from `base`.
@@ -58,10 +59,10 @@ pub fn light_term<R: Real>(
     let distance = distance2.sqrt();
     let d = toward * (R::exact(1.0) / distance);
     let light_in_plane = scene.is_plane[point.object]
-        && world.planes[world.places[point.object]]
-            .lights_on_surface
-            .binary_search(&number)
-            .is_ok();
+        && world.plane_of(point.object).is_some_and(|plane| {
+            let lights = &plane.lights_on_surface;
+            lights.binary_search(&number).is_ok()
+        });
     let across = toward.dot(normal);
     if light_in_plane || !across.positive()? {
         return Ok(Lit::FacesAway);
@@ -125,7 +126,7 @@ fn shadow<R: Real>(
         light: Some(light),
     };
     let reach = match &range.light {
-        Some(light) if world.bvh.is_some() => at_most(light.distance),
+        Some(light) if world.has_tree() => at_most(light.distance),
         _ => f64::INFINITY,
     };
     let opaque = |object: usize| !scene.palette[scene.materials[object]].transparent;

@@ -306,7 +306,7 @@ impl<'a> ExactTracer<'a> {
         let (prepared, end) = found.unwrap_or_else(|| {
             let sources = self
                 .sources
-                .get_or_init(|| self.bounded.sources(self.scene));
+                .get_or_init(|| self.bounded.sources(self.scene, self.view));
             Lazy::clear();
             let prepared = Prepared::again(self.scene, self.view, &self.bounded, sources);
             let (prepared, end) = (Rc::new(prepared), Lazy::mark());

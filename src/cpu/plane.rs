@@ -25,6 +25,13 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
     }
     match &plane.sides {
         Sides::Unbounded => {}
+        Sides::Triangle(sides) => {
+            for side in sides.iter() {
+                if !along(&side.form).non_negative()? {
+                    return Ok(None);
+                }
+            }
+        }
         Sides::Rectangle(strips) => {
             for strip in strips.iter() {
                 // 0 ≤ p ≤ length, all times 1/s.
@@ -62,6 +69,13 @@ pub fn plane_hits_from<R: Real>(
     }
     match &plane.extent {
         Extent::Unbounded => {}
+        Extent::Triangle(sides) => {
+            for side in sides.iter() {
+                if !(side.row.dot(position) - side.origin).non_negative()? {
+                    return Ok(None);
+                }
+            }
+        }
         Extent::Rectangle(rectangle) => {
             let coordinates = rectangle.coordinates(position);
             for (p, length) in coordinates.into_iter().zip(rectangle.dimensions) {

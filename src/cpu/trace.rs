@@ -65,6 +65,29 @@ pub fn find_closest_object<R: Real>(
         }
         Ok(())
     };
+    let triangle = |closest: &mut Option<Hit<R>>, index: usize| -> Result<(), Undecided> {
+        let mark = R::mark();
+        let made;
+        let triangle = match scene.triangles.get(index) {
+            Some(triangle) => triangle,
+            None => {
+                made = scene.make_triangle(index);
+                match &made {
+                    Some(triangle) => triangle,
+                    None => return Err(Undecided),
+                }
+            }
+        };
+        let hit = plane_hits(triangle, ray)?.map(|inverse| Hit {
+            inverse,
+            object: triangle.object,
+            index,
+        });
+        if !takes(closest, hit)? {
+            R::release(mark);
+        }
+        Ok(())
+    };
     let Some(screen_grid) = &scene.screen_grid else {
         for index in 0..scene.sphere_count() {
             sphere(&mut closest, index)?;
@@ -80,7 +103,10 @@ pub fn find_closest_object<R: Real>(
         {
             break;
         }
-        sphere(&mut closest, index)?;
+        match index.checked_sub(scene.sphere_count()) {
+            None => sphere(&mut closest, index)?,
+            Some(index) => triangle(&mut closest, index)?,
+        }
     }
     Ok(closest)
 }
@@ -134,8 +160,12 @@ pub fn locate<R: Real>(scene: &Prepared<R>, ray: &Ray<R>, hit: &Hit<R>) -> Point
             }),
         };
     }
-    if let Some(world) = &scene.world {
-        position = on_plane(&world.planes[world.places[object]], position);
+    if let Some(plane) = scene
+        .world
+        .as_ref()
+        .and_then(|world| world.plane_of(object))
+    {
+        position = on_plane(&plane, position);
     }
     Point {
         object,

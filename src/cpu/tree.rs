@@ -250,9 +250,13 @@ impl<'a, R: Real> Tree<'a, R> {
             }
         };
         if material.mirror {
-            let mirrored = if scene.is_plane[point.object] {
+            let plane = if scene.is_plane[point.object] {
+                world.plane_of(point.object)
+            } else {
+                None
+            };
+            let mirrored = if let Some(plane) = plane {
                 // With the normal as it is given there is no root in the direction.
-                let plane = &world.planes[world.places[point.object]];
                 let [x, y, z] = plane.mirror;
                 V3::new(x.dot(ray.dir), y.dot(ray.dir), z.dot(ray.dir))
             } else {

@@ -4,7 +4,7 @@ use super::bvh::{at_most, bvh_hits};
 use super::plane::plane_hits_from;
 use super::sphere::sphere_hits_from;
 use super::surface::Point;
-use crate::prepare::World;
+use crate::prepare::{World, WorldPlane};
 use crate::real::{Real, Undecided, V3};
 
 /// A hit of a ray from anywhere.
@@ -43,7 +43,7 @@ pub fn closest_hit<R: Real>(
     range: &Range<R>,
 ) -> Result<Option<SecondaryHit<R>>, Undecided> {
     let mut closest: Option<SecondaryHit<R>> = None;
-    let tree = world.bvh.is_some();
+    let tree = world.has_tree();
     hits_from(world, base, dir, range, &mut |hit| {
         let takes = match &closest {
             None => true,
@@ -101,10 +101,29 @@ pub fn hits_from<R: Real>(
     for index in treated..world.sphere_count() {
         sphere(index)?;
     }
+    if reach >= 0.0
+        && let Some(tree) = &world.triangle_tree
+    {
+        let loose = world.loose_planes();
+        bvh_hits(tree, base, dir, reach, |index| {
+            let mark = R::mark();
+            let Some(plane) = world.plane(loose + index) else {
+                return Err(Undecided);
+            };
+            if reach >= 0.0
+                && let Some(hit) = plane_from(world, &plane, base, dir, range)?
+            {
+                reach = take(hit)?;
+            } else {
+                R::release(mark);
+            }
+            Ok(reach)
+        })?;
+    }
     Ok(())
 }
 
-/// Calls `take` with every plane that the ray meets in range, and returns how far hits still matter.
+/// Calls `take` with every plane outside the tree that the ray meets in range, and returns how far hits still matter.
 fn planes_from<R: Real>(
     world: &World<R>,
     base: V3<R>,
@@ -113,35 +132,50 @@ fn planes_from<R: Real>(
     take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<f64, Undecided> {
     let mut reach = match &range.light {
-        Some(light) if world.bvh.is_some() => at_most(light.distance),
+        Some(light) if world.has_tree() => at_most(light.distance),
         _ => f64::INFINITY,
     };
-    for plane in &world.planes {
+    for plane in &world.planes[..world.loose_planes()] {
         let mark = R::mark();
-        if range.skip == Some(world.groups[plane.object]) || range.ends_on(&plane.lights_on_surface)
-        {
-            continue;
-        }
-        if let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)?
-            && range.reaches(t)?
-        {
-            let zero = V3::new(R::zero(), R::zero(), R::zero());
-            reach = take(SecondaryHit {
-                t,
-                point: Point {
-                    object: plane.object,
-                    position,
-                    from_center: zero,
-                },
-            })?;
-            if reach < 0.0 {
-                break;
+        match plane_from(world, plane, base, dir, range)? {
+            Some(hit) => {
+                reach = take(hit)?;
+                if reach < 0.0 {
+                    break;
+                }
             }
-        } else {
-            R::release(mark);
+            None => R::release(mark),
         }
     }
     Ok(reach)
+}
+
+/// The hit of the plane, if it is in range.
+fn plane_from<R: Real>(
+    world: &World<R>,
+    plane: &WorldPlane<R>,
+    base: V3<R>,
+    dir: V3<R>,
+    range: &Range<R>,
+) -> Result<Option<SecondaryHit<R>>, Undecided> {
+    if range.skip == Some(world.groups[plane.object]) || range.ends_on(&plane.lights_on_surface) {
+        return Ok(None);
+    }
+    let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)? else {
+        return Ok(None);
+    };
+    if !range.reaches(t)? {
+        return Ok(None);
+    }
+    let zero = V3::new(R::zero(), R::zero(), R::zero());
+    Ok(Some(SecondaryHit {
+        t,
+        point: Point {
+            object: plane.object,
+            position,
+            from_center: zero,
+        },
+    }))
 }
 
 /// The hit of the sphere of this place, if it is in range.

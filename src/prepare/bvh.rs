@@ -1,11 +1,11 @@
-//! A bounding volume hierarchy over many spheres, for rays from anywhere. For both tracers.
+//! Bounding volume hierarchies over many spheres and over many triangles, for rays from anywhere. For both tracers.
 //!
 //! `obvhs` builds the tree from f32 boxes. A box is padded outward before that, by more than a slab test in f32 can
-//! err, so that the tree only ever says "may be hit": which sphere is hit, and where, is decided by the spheres alone.
+//! err, so that the tree only ever says "may be hit": what is hit, and where, is decided by what it holds alone.
 
 use std::time::Duration;
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
@@ -13,14 +13,14 @@ use obvhs::{Boundable, BvhBuildParams};
 use super::world_sphere::WorldSphere;
 use crate::real::Real;
 
-/// The tree. The spheres it holds stand in its order: a leaf's are `first..first + count`.
+/// A tree. The spheres or triangles it holds stand in its order: a leaf's are `first..first + count`.
 #[derive(Debug, Clone)]
 pub struct Bvh {
     /// Node 0 is the root.
     pub nodes: Vec<Node>,
     /// Most nodes that wait while one is looked at.
     pub depth: usize,
-    /// How many spheres, the first of the scene's, the tree holds.
+    /// How many spheres or triangles the tree holds.
     pub len: usize,
 }
 
@@ -40,20 +40,21 @@ pub struct Node {
     pub min: [f32; 3],
     /// Its greatest corner.
     pub max: [f32; 3],
-    /// A leaf's first sphere, or the first of an inner node's two children, which are neighbours.
+    /// A leaf's first sphere or triangle, or the first of an inner node's two children, which are neighbours.
     pub first: u32,
-    /// How many spheres a leaf holds; 0 for an inner node.
+    /// How many a leaf holds; 0 for an inner node.
     pub count: u32,
 }
 
-/// From this many spheres on a tree is quicker than asking every one (docs/BENCH.md).
+/// From this many spheres or triangles on a tree is quicker than asking every one (docs/BENCH.md).
 pub const WORTHWHILE: usize = 48;
 
 /// A box is widened by this share of its corners' coordinates: what its own rounding to f32 and a hit point's may be
 /// off. The slab test's roundings are relative to the distance, and covered by the slack of the test.
 const PAD: f64 = 1.0 / 524_288.0;
 
-/// Coordinates beyond this would overflow an f32 when areas are compared; such spheres stay outside the tree.
+/// Coordinates beyond this would overflow an f32 when areas are compared; such spheres and triangles stay outside the
+/// tree.
 const REACH: f64 = 1e17;
 
 /// A slab test in f64 errs by a few 2⁻⁵³ of its distances.
@@ -68,28 +69,51 @@ impl Boundable for Boxed {
 }
 
 /// The padded box of a sphere, if f32 can hold it.
-fn padded<R: Real>(sphere: &WorldSphere<R>) -> Option<Boxed> {
+fn around_sphere<R: Real>(sphere: &WorldSphere<R>) -> Option<Boxed> {
     let (center, radius) = (sphere.center.to_f64(), sphere.radius.to_f64());
-    let corner = |side: f64| {
-        let at = |c: f64| {
-            let bound = c + side * radius;
-            (bound + side * (PAD * (bound.abs() + radius) + 1e-30)) as f32
-        };
-        Vec3A::new(at(center.x), at(center.y), at(center.z))
+    padded(center - radius, center + radius, radius)
+}
+
+/// The padded box between two corners, if f32 can hold it; `size` is how large what it holds is.
+fn padded(min: DVec3, max: DVec3, size: f64) -> Option<Boxed> {
+    let corner = |corner: DVec3, side: f64| {
+        let at = |bound: f64| (bound + side * (PAD * (bound.abs() + size) + 1e-30)) as f32;
+        Vec3A::new(at(corner.x), at(corner.y), at(corner.z))
     };
-    (center.abs().max_element() + radius < REACH)
-        .then(|| Boxed(Aabb::new(corner(-1.0), corner(1.0))))
+    // A NaN fails this comparison.
+    (min.abs().max(max.abs()).max_element() < REACH)
+        .then(|| Boxed(Aabb::new(corner(min, -1.0), corner(max, 1.0))))
 }
 
 /// Builds the tree over the spheres that f32 can hold and puts those first, in the tree's order; the others follow in
 /// their own. None, and nothing moved, if they are too few.
 pub fn build<R: Real>(spheres: &mut Vec<WorldSphere<R>>) -> Option<Bvh> {
-    let boxes: Vec<Option<Boxed>> = spheres.iter().map(padded).collect();
-    let inside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_some()).collect();
+    let (tree, order) = tree(spheres.iter().map(around_sphere).collect())?;
+    let mut unsorted: Vec<Option<WorldSphere<R>>> =
+        std::mem::take(spheres).into_iter().map(Some).collect();
+    spheres.extend(order.into_iter().filter_map(|i| unsorted[i].take()));
+    Some(tree)
+}
+
+/// Builds the tree over triangles, given by their vertices, positions from the viewpoint in units of 2^scale. With it
+/// come the numbers of all triangles: those of the tree first, in its order.
+pub fn over_triangles(triangles: &[[DVec3; 3]]) -> Option<(Bvh, Vec<usize>)> {
+    let around = |vertices: &[DVec3; 3]| {
+        let [a, b, c] = *vertices;
+        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+        padded(min, max, (max - min).max_element())
+    };
+    tree(triangles.iter().map(around).collect())
+}
+
+/// The tree over what has a box, and the numbers of all: those of the tree first, in its order. None if they are too
+/// few.
+fn tree(boxes: Vec<Option<Boxed>>) -> Option<(Bvh, Vec<usize>)> {
+    let inside: Vec<usize> = (0..boxes.len()).filter(|&i| boxes[i].is_some()).collect();
     if inside.len() < WORTHWHILE {
         return None;
     }
-    let outside: Vec<usize> = (0..spheres.len()).filter(|&i| boxes[i].is_none()).collect();
+    let outside: Vec<usize> = (0..boxes.len()).filter(|&i| boxes[i].is_none()).collect();
     let boxes: Vec<Boxed> = boxes.into_iter().flatten().collect();
     let tree = build_bvh2(
         &boxes,
@@ -111,15 +135,10 @@ pub fn build<R: Real>(spheres: &mut Vec<WorldSphere<R>>) -> Option<Bvh> {
         .iter()
         .map(|&i| inside[i as usize])
         .chain(outside);
-    let mut unsorted: Vec<Option<WorldSphere<R>>> =
-        std::mem::take(spheres).into_iter().map(Some).collect();
-    spheres.extend(order.filter_map(|i| unsorted[i].take()));
+    let order = order.collect();
     let depth = depth(&nodes);
-    Some(Bvh {
-        nodes,
-        depth,
-        len: inside.len(),
-    })
+    let len = inside.len();
+    Some((Bvh { nodes, depth, len }, order))
 }
 
 /// The depth of the tree: one node waits on each level of the way down.

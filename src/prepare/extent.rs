@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::real::rational::{Ratio, abs, dot, ratio, ratio3, two_to};
+use crate::real::rational::{Ratio, abs, cross, dot, ratio, ratio3, two_to};
 use crate::real::{Real, V3};
 use crate::scene;
 
@@ -13,6 +13,17 @@ pub enum Extent<R> {
     Unbounded,
     /// It is a rectangle.
     Rectangle(Rectangle<R>),
+    /// It is a triangle: what is within three sides.
+    Triangle(Box<[HalfPlane<R>; 3]>),
+}
+
+/// What lies on one side of a line in a plane: p = row·P − origin is ≥ 0 for these points P.
+#[derive(Debug, Clone)]
+pub struct HalfPlane<R> {
+    /// In the plane, perpendicular to the line; of any length.
+    pub row: V3<R>,
+    /// row·Q for the points Q of the line.
+    pub origin: R,
 }
 
 /// The rectangle of a finite plane: p_i = rows\[i\]·P − origin\[i\] lies in [0, dimensions\[i\]] for i = 0 and 1.
@@ -84,8 +95,7 @@ fn across(n: &[Ratio; 3], x: &[Ratio; 3]) -> [Ratio; 3] {
 /// Vectors along both sides of a rectangle, rational and of any length: the second is N × the first.
 pub(super) fn along_sides(n: &[Ratio; 3], x: &[Ratio; 3]) -> [[Ratio; 3]; 2] {
     let first = across(n, x);
-    let cross = |i: usize, j: usize| &n[i] * &first[j] - &n[j] * &first[i];
-    let second = [cross(1, 2), cross(2, 0), cross(0, 1)];
+    let second = cross(n, &first);
     [first, second]
 }
 

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use dashu_ratio::RBig;
+use glam::DVec3;
 
+use super::triangle::exact_normal;
 use crate::real::rational::{Ratio, dot, is_zero, ratio3};
 use crate::scene::{Object, Scene, Shape};
 
@@ -13,7 +15,9 @@ pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
     let mut groups = Groups::default();
     let of = |object: &Object| match object.shape {
         Shape::Sphere { .. } if !equal_spheres => groups.one_more(),
-        Shape::Sphere { .. } | Shape::Plane { .. } => groups.of(&object.shape),
+        Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => {
+            groups.of(&object.shape)
+        }
     };
     scene.objects.iter().map(of).collect()
 }
@@ -30,21 +34,12 @@ impl Groups {
     fn of(&mut self, shape: &Shape) -> u32 {
         let new = self.count;
         let group = match *shape {
-            Shape::Plane { normal, point, .. } => {
-                let n = ratio3(normal);
-                // N·X = N·Q with the first component of N that is not 0 scaled to 1.
-                let lead = n
-                    .iter()
-                    .find(|c| !is_zero(c))
-                    .cloned()
-                    .unwrap_or(Ratio::ONE);
-                let offset = dot(&n, &ratio3(point)) / &lead;
-                let [x, y, z] = n.map(|c| (c / &lead).canonicalize());
-                *self
-                    .planes
-                    .entry([x, y, z, offset.canonicalize()])
-                    .or_insert(new)
+            Shape::Plane { normal, point, .. } => self.plane(carrier(&ratio3(normal), point)),
+            Shape::Triangle(ref triangle) => {
+                let normal = exact_normal(triangle);
+                self.plane(carrier(&normal, triangle.vertices[0]))
             }
+            Shape::Quadric(_) => new,
             Shape::Sphere { center, radius } => {
                 // Adding 0 makes −0 and 0 the same.
                 let key =
@@ -58,6 +53,12 @@ impl Groups {
         group
     }
 
+    /// The number of a plane with these numbers, the next one if it is new.
+    fn plane(&mut self, carrier: [Ratio; 4]) -> u32 {
+        let key = carrier.map(Ratio::canonicalize);
+        *self.planes.entry(key).or_insert(self.count)
+    }
+
     /// The number of a surface that nothing shares.
     fn one_more(&mut self) -> u32 {
         self.count += 1;
@@ -65,10 +66,18 @@ impl Groups {
     }
 }
 
+/// Numbers that are the same for the same plane, exactly: N over its first component that is
+/// not 0, and N·Q over that.
+fn carrier(normal: &[Ratio; 3], point: DVec3) -> [Ratio; 4] {
+    let lead = normal.iter().find(|c| !is_zero(c)).cloned();
+    let lead = lead.unwrap_or(Ratio::ONE);
+    let offset = dot(normal, &ratio3(point)) / &lead;
+    let [x, y, z] = normal.clone().map(|c| c / &lead);
+    [x, y, z, offset]
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
 
     fn plane(normal: [f64; 3], point: [f64; 3]) -> Shape {

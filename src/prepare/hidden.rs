@@ -1,5 +1,6 @@
 //! Objects that no ray hits first, whatever the ray: neither tracer is told of them.
 
+use super::triangle::is_before;
 use crate::scene::{Extent, Object, Scene, Shape};
 
 /// For each object whether an object that comes before covers all of it, or all of it is before the screen. `groups`
@@ -21,7 +22,8 @@ pub fn hidden(scene: &Scene, groups: &[u32], screen_tolerance: f64) -> Vec<bool>
                 };
                 (facing && point.z > screen_tolerance, whole)
             }
-            Shape::Sphere { .. } => (false, true),
+            Shape::Triangle(ref triangle) => (is_before(triangle, screen_tolerance), false),
+            Shape::Sphere { .. } | Shape::Quadric(_) => (false, true),
         };
         let hides = before || covered[*group as usize];
         if whole {

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::camera::over_pixels;
 use super::extent::along_sides;
 use super::surface::{PPLANE_SHIFT, PPLANE_TILE, TILE_SHIFT};
+use super::triangle::exact_normal;
 use crate::real::rational::{Ratio, abs, dot, is_positive, is_zero, ratio, ratio3, root, sub};
 use crate::real::{Bounded, Real};
 use crate::scene::{self, Extent, Object, Scene, Shape, TextureMode};
@@ -39,13 +40,18 @@ pub fn indices(scene: &Scene, object: &Object) -> Vec<Option<Index>> {
             normal,
             point,
             extent,
-        } => (normal, point, extent),
-        // Its hits are no quotients of linear forms.
-        Shape::Sphere { .. } => return Vec::new(),
+        } => (ratio3(*normal), point, extent),
+        Shape::Triangle(triangle) => (
+            exact_normal(triangle),
+            &triangle.vertices[0],
+            &Extent::Unbounded,
+        ),
+        // Their hits are no quotients of linear forms.
+        Shape::Sphere { .. } | Shape::Quadric(_) => return Vec::new(),
     };
     let viewed = ViewedPlane {
         camera: &scene.camera,
-        normal: ratio3(*normal),
+        normal,
         point: ratio3(*point),
     };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(ratio3);

@@ -86,8 +86,12 @@ impl<R: Real> Light<R> {
             name: _,
             location,
             emissivity,
-            cone,
+            beam,
         } = *light;
+        let cone = match beam {
+            scene::Beam::Cone(cone) => Some(cone),
+            scene::Beam::Everywhere | scene::Beam::Picture(_) => None,
+        };
         let unit = R::exact(two_to(-scale));
         let at = location;
         let location = V3::exact(at);
@@ -107,7 +111,7 @@ impl<R: Real> Light<R> {
 
 /// A vector times the power of two that brings its largest component, of which `near` tells the size, to 1 or next
 /// above: so that squares stay within the range of f64.
-fn of_size_one<R: Real>(v: V3<R>, near: DVec3) -> V3<R> {
+pub(super) fn of_size_one<R: Real>(v: V3<R>, near: DVec3) -> V3<R> {
     let largest = near.abs().max_element();
     if largest == 0.0 || largest.is_infinite() {
         return v;

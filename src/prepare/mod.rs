@@ -23,6 +23,7 @@ pub mod prepared;
 pub mod screen_grid;
 pub mod sphere;
 pub mod surface;
+mod triangle;
 pub mod world;
 pub mod world_plane;
 pub mod world_sphere;

@@ -45,7 +45,7 @@ pub struct Step {
 
 impl Step {
     /// The border of `form ≥ 0` over (x, y, 1), if it is one.
-    fn of(form: &[Ratio; 3]) -> Option<Self> {
+    pub(super) fn of(form: &[Ratio; 3]) -> Option<Self> {
         let axis = match (is_zero(&form[0]), is_zero(&form[1])) {
             (false, true) => 0,
             (true, false) => 1,
@@ -66,6 +66,17 @@ pub enum Sides<R> {
     Unbounded,
     /// A rectangle is where two strips cross.
     Rectangle(Box<[Strip<R>; 2]>),
+    /// A triangle is what is within three sides.
+    Triangle(Box<[Side<R>; 3]>),
+}
+
+/// What lies on one side of a line.
+#[derive(Debug, Clone)]
+pub struct Side<R> {
+    /// Coefficients over (W.x, W.y, 1) of a form that is ≥ 0 within.
+    pub form: [R; 3],
+    /// The same, where the line runs along a column or a row.
+    pub step: Option<Step>,
 }
 
 /// What lies between two parallel sides, 0 ≤ p ≤ length: on the ray s·W, p/s is linear in the ray.
@@ -192,15 +203,17 @@ fn side_steps(
 }
 
 /// The rule H.z ≤ τ as a linear form over pixels that is ≥ 0 where it holds.
-struct Front {
-    form: [Ratio; 3],
-    always: bool,
-    never: bool,
+pub(super) struct Front {
+    pub(super) form: [Ratio; 3],
+    /// It holds on the whole screen.
+    pub(super) always: bool,
+    /// It holds nowhere on the screen, or the plane is met nowhere there.
+    pub(super) never: bool,
 }
 
 impl Front {
     /// H.z = V.z·(1 − s) ≤ τ, with s > 0, is (V.z − τ)·(1/s) ≤ V.z.
-    fn new(
+    pub(super) fn new(
         camera: &scene::Camera,
         ViewParameters {
             screen_tolerance,

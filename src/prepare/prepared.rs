@@ -7,7 +7,7 @@ use super::camera::Camera;
 use super::groups::groups;
 use super::hidden::hidden;
 use super::material::Material;
-use super::on_demand::{OnDemandSources, OnDemandSpheres, balls};
+use super::on_demand::{OnDemandShapes, OnDemandSources, balls};
 use super::plane::Plane;
 use super::screen_grid::{self, ScreenGrid};
 use super::sphere::Sphere;
@@ -27,10 +27,12 @@ pub struct Prepared<R> {
     /// The spheres that a primary ray can hit, in file order; where they are in the screen's cells, those that are
     /// seen.
     pub spheres: Vec<Sphere<R>>,
-    /// Where on the screen they are, if there are many.
+    /// The triangles that are in the screen's cells; others are among the planes.
+    pub triangles: Vec<Plane<R>>,
+    /// Where on the screen spheres and triangles are, if there are many.
     pub screen_grid: Option<Arc<ScreenGrid>>,
-    /// What spheres are made from that are not in `spheres`.
-    pub on_demand: Option<OnDemandSpheres>,
+    /// What spheres and triangles are made from that are not in `spheres` and `triangles`.
+    pub on_demand: Option<OnDemandShapes>,
     /// One for each object of the scene: what it looks like.
     pub surfaces: Vec<Surface<R>>,
     /// One for each object of the scene: index of its material.
@@ -63,14 +65,17 @@ impl<R: Real> Prepared<R> {
         let hidden = hidden(scene, &groups, view.screen_tolerance);
         let mut prepared = Self::of(scene, view, true, &hidden);
         if scene.objects.len() >= screen_grid::WORTHWHILE {
-            let (spheres, screen_grid) = ScreenGrid::sorted(scene, &prepared.camera, view, &hidden);
-            prepared.screen_grid = (!spheres.is_empty()).then(|| Arc::new(screen_grid));
-            prepared.spheres = spheres;
+            let (spheres, triangles, screen_grid) =
+                ScreenGrid::sorted(scene, &prepared.camera, view, &hidden);
+            let any = !spheres.is_empty() || !triangles.is_empty();
+            prepared.screen_grid = any.then(|| Arc::new(screen_grid));
+            (prepared.spheres, prepared.triangles) = (spheres, triangles);
         }
         let materials = scene.objects.iter().map(|object| object.material);
         let is_plane = scene.objects.iter().map(|object| match object.shape {
             Shape::Plane { .. } => true,
-            Shape::Sphere { .. } => false,
+            Shape::Sphere { .. } | Shape::Quadric(_) => false,
+            Shape::Triangle(_) => true,
         });
         prepared.materials = Arc::new(materials.collect());
         prepared.is_plane = Arc::new(is_plane.collect());
@@ -154,7 +159,14 @@ impl<R: Real> Prepared<R> {
                     center,
                     radius,
                 )),
-                Shape::Sphere { .. } => {}
+                Shape::Triangle(ref triangle) if few => planes.extend(Plane::of_triangle(
+                    &scene.camera,
+                    &camera,
+                    view,
+                    index,
+                    triangle,
+                )),
+                Shape::Sphere { .. } | Shape::Triangle(_) | Shape::Quadric(_) => {}
             }
         }
         let any_transparent = scene
@@ -171,6 +183,7 @@ impl<R: Real> Prepared<R> {
             camera,
             planes,
             spheres,
+            triangles: Vec::new(),
             screen_grid: None,
             on_demand: None,
             surfaces,
@@ -185,9 +198,9 @@ impl<R: Real> Prepared<R> {
         }
     }
 
-    /// What the spheres are made from one by one in another number type, where they are many.
-    pub fn sources(&self, scene: &Scene) -> OnDemandSources {
-        let world = self.world.as_ref().filter(|world| world.bvh.is_some());
+    /// What spheres and triangles are made from one by one in another number type, where they are many.
+    pub fn sources(&self, scene: &Scene, view: ViewParameters) -> OnDemandSources {
+        let world = self.world.as_ref().filter(|world| world.has_tree());
         if self.screen_grid.is_none() && world.is_none() {
             return OnDemandSources::default();
         }
@@ -195,9 +208,10 @@ impl<R: Real> Prepared<R> {
         OnDemandSources {
             primary: self.screen_grid.as_ref().map(|_| {
                 let order = self.spheres.iter().map(|s| s.object);
-                OnDemandSpheres::new(scene, scale, &balls, order, HashMap::new())
+                let triangles = self.triangles.iter().map(|t| t.object);
+                OnDemandShapes::new(scene, view, scale, &balls, order, HashMap::new(), triangles)
             }),
-            world: world.map(|world| world.on_demand(scene, scale, &balls)),
+            world: world.map(|world| world.on_demand(scene, view, scale, &balls)),
         }
     }
 
@@ -205,11 +219,18 @@ impl<R: Real> Prepared<R> {
     pub fn sphere_count(&self) -> usize {
         self.on_demand
             .as_ref()
-            .map_or(self.spheres.len(), OnDemandSpheres::count)
+            .map_or(self.spheres.len(), OnDemandShapes::count)
     }
 
     /// A sphere that is not in `spheres`.
     pub fn make_sphere(&self, index: usize) -> Option<Sphere<R>> {
         self.on_demand.as_ref()?.primary(&self.camera, index)
+    }
+
+    /// A triangle that is not in `triangles`.
+    pub fn make_triangle(&self, index: usize) -> Option<Plane<R>> {
+        self.on_demand
+            .as_ref()?
+            .primary_triangle(&self.camera, index)
     }
 }

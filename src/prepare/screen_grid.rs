@@ -1,8 +1,9 @@
-//! Which of many spheres a primary ray may hit, by the cell of the screen that it passes through. For both tracers.
+//! Which of many spheres and triangles a primary ray may hit, by the cell of the screen that it passes through. For
+//! both tracers.
 //!
-//! A sphere stands in the list of every cell that its outline's box touches. The lists run from the nearest sphere on,
-//! so that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64 and are
-//! padded by far more than that errs: they only ever say "may be hit".
+//! A sphere or triangle stands in the list of every cell that its outline's box touches. The lists run from the nearest
+//! sphere on, so that a ray asks them only until what is left must lie behind what it has hit. The boxes come from f64
+//! and are padded by far more than that errs: they only ever say "may be hit".
 
 use std::collections::HashSet;
 
@@ -10,6 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::camera::Camera;
+use super::plane::Plane;
 use super::sphere::Sphere;
 use crate::real::Real;
 use crate::real::rational::two_to;
@@ -26,7 +28,7 @@ const SIDES: [u32; 2] = [8, 4];
 /// Most cells.
 const MOST_CELLS: u64 = 1 << 20;
 
-/// Most entries of all lists, beside eight for each sphere.
+/// Most entries of all lists, beside eight for each sphere or triangle.
 const ENTRIES: u64 = 1 << 20;
 
 /// Spheres are seen from outside by a ray that is not parallel to the screen if their depth is more than their radius
@@ -54,17 +56,21 @@ pub struct ScreenGrid {
     pub count: [u32; 2],
     /// The list of cell i, counted by rows from the bottom left, is `members[starts[i]..starts[i + 1]]`.
     pub starts: Vec<u32>,
-    /// Places of the prepared spheres, in each list the nearest first.
+    /// Places of the prepared spheres, and after all of them those of the prepared triangles; in each list the nearest
+    /// first.
     pub members: Vec<u32>,
-    /// For each prepared sphere: its hits' 1/s are no larger.
+    /// For each of them: its hits' 1/s are no larger.
     pub max_inverse: Vec<f32>,
 }
 
-/// The pixels that a sphere may cover: first and last column and row.
+/// The pixels that a sphere or triangle may cover: first and last column and row.
 type Covered = [[u32; 2]; 2];
 
+/// The largest 1/s of its hits, and the pixels that it may cover.
+type Seen = (f32, Covered);
+
 impl ScreenGrid {
-    /// The places of the spheres that a ray through this point of the screen may hit, in pixels from the bottom left.
+    /// The places of what a ray through this point of the screen may hit, in pixels from the bottom left.
     /// The nearest come first.
     pub fn at(&self, pixel: [f64; 2]) -> &[u32] {
         let [column, row] = [0, 1].map(|i| {
@@ -75,40 +81,51 @@ impl ScreenGrid {
         &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// The spheres that are seen somewhere, prepared, and where that is.
+    /// The spheres and triangles that are seen somewhere, prepared, and where that is.
     pub fn sorted<R: Real>(
         scene: &Scene,
         camera: &Camera<R>,
         view: ViewParameters,
         hidden: &[bool],
-    ) -> (Vec<Sphere<R>>, Self) {
+    ) -> (Vec<Sphere<R>>, Vec<Plane<R>>, Self) {
         let ball = |object: usize| match scene.objects[object].shape {
             Shape::Sphere { center, radius } => Some((center, radius)),
-            Shape::Plane { .. } => None,
+            Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => None,
         };
         let outline = Outlines::new(scene, camera, view);
-        let seen = |object: usize| {
+        let seen_sphere = |object: usize| {
             let (center, radius) = ball(object).filter(|_| !hidden[object])?;
-            let (max_inverse, covered) = outline.of(center, radius)?;
+            let seen = outline.of(center, radius)?;
             let sphere = Sphere::new(scene.camera.viewpoint, camera, object, center, radius)?;
-            Some((sphere, (max_inverse, covered)))
+            Some((sphere, seen))
         };
-        let (spheres, seen): (Vec<Sphere<R>>, Vec<(f32, Covered)>) = (0..scene.objects.len())
-            .into_par_iter()
-            .filter_map(seen)
-            .unzip();
+        let seen_triangle = |object: usize| {
+            let triangle = match &scene.objects[object].shape {
+                Shape::Triangle(triangle) if !hidden[object] => triangle,
+                _ => return None,
+            };
+            let seen = outline.of_triangle(&triangle.vertices)?;
+            let plane = Plane::of_triangle(&scene.camera, camera, view, object, triangle)?;
+            Some((plane, seen))
+        };
+        let objects = || (0..scene.objects.len()).into_par_iter();
+        let (spheres, mut seen): (Vec<Sphere<R>>, Vec<Seen>) =
+            objects().filter_map(seen_sphere).unzip();
+        let (triangles, seen_too): (Vec<Plane<R>>, Vec<Seen>) =
+            objects().filter_map(seen_triangle).unzip();
+        seen.extend(seen_too);
         let (max_inverse, covered): (Vec<f32>, Vec<Covered>) = seen.into_iter().unzip();
-        let ball = |place: usize| ball(spheres[place].object).unwrap_or_default();
+        let ball = |place: usize| ball(spheres.get(place)?.object);
         let screen_grid = Self::of(scene.camera.pixeldim, max_inverse, &covered, ball);
-        (spheres, screen_grid)
+        (spheres, triangles, screen_grid)
     }
 
-    /// The lists of spheres that cover these pixels.
+    /// The lists of spheres and triangles that cover these pixels; `ball` is what a sphere is.
     fn of(
         pixels: [u32; 2],
         max_inverse: Vec<f32>,
         covered: &[Covered],
-        ball: impl Fn(usize) -> (DVec3, f64),
+        ball: impl Fn(usize) -> Option<(DVec3, f64)>,
     ) -> Self {
         let order = nearest_first(&max_inverse, ball);
         let mut sides = SIDES;
@@ -174,9 +191,9 @@ fn few_enough(pixels: [u32; 2], sides: [u32; 2], covered: &[Covered]) -> bool {
     count[0] * count[1] <= MOST_CELLS && total <= ENTRIES + 8 * covered.len() as u64
 }
 
-/// The places of the spheres, nearest first. Of equal spheres only the first in the file is there: it is the one that
-/// counts.
-fn nearest_first(max_inverse: &[f32], ball: impl Fn(usize) -> (DVec3, f64)) -> Vec<u32> {
+/// The places of the spheres and triangles, nearest first. Of equal spheres only the first in the file is there: it is
+/// the one that counts.
+fn nearest_first(max_inverse: &[f32], ball: impl Fn(usize) -> Option<(DVec3, f64)>) -> Vec<u32> {
     // Positive floats are ordered as their bits.
     let key = |(place, max_inverse): (usize, &f32)| {
         u64::from(!max_inverse.to_bits()) << 32 | place as u64
@@ -192,7 +209,9 @@ fn nearest_first(max_inverse: &[f32], ball: impl Fn(usize) -> (DVec3, f64)) -> V
         }
         let mut seen = HashSet::new();
         order.extend(places.filter(|place| {
-            let (center, radius) = ball(*place as usize);
+            let Some((center, radius)) = ball(*place as usize) else {
+                return true;
+            };
             // Adding 0 makes −0 and 0 the same.
             let [x, y, z] = center.to_array().map(|c| c + 0.0);
             seen.insert([x, y, z, radius].map(f64::to_bits))
@@ -227,8 +246,54 @@ impl Outlines {
         }
     }
 
+    /// The same of a triangle: the box of its projected vertices.
+    fn of_triangle(&self, vertices: &[DVec3; 3]) -> Option<Seen> {
+        let from = vertices.map(|vertex| (vertex - self.viewpoint) * self.unit);
+        let (d, depth) = (self.distance, from.map(|v| -v.z));
+        // All rays go towards negative z.
+        if depth.iter().all(|depth| *depth < 0.0) {
+            return None;
+        }
+        let reach = from.iter().map(|v| v.abs().max_element());
+        let reach = reach.fold(0.0, f64::max);
+        // A NaN fails these comparisons.
+        let ahead = |depth: &f64| *depth > 1e-50 && *depth > 1e-5 * reach;
+        let mut covered = self.pixels.map(|n| [0, n - 1]);
+        if !(reach < 1e100 && depth.iter().all(ahead)) {
+            return Some((f32::MAX, covered));
+        }
+        // H.z = −d·s is at most that of the nearest vertex.
+        let nearest = depth.iter().copied().fold(f64::INFINITY, f64::min);
+        let nearest = (d / nearest * INVERSE_GROWTH).min(f64::from(f32::MAX) * 0.9);
+        for (i, covered) in covered.iter_mut().enumerate() {
+            let at = |k: usize| d * from[k][i] / depth[k];
+            let ends = (at(0).min(at(1)).min(at(2)), at(0).max(at(1)).max(at(2)));
+            let pad = PAD * (ends.0.abs() + ends.1.abs());
+            *covered = self.pixels_between(i, ends.0 - pad, ends.1 + pad)?;
+        }
+        Some(((nearest as f32).next_up(), covered))
+    }
+
+    /// The columns (`i` = 0) or rows (1) whose rays' W is between these; None if there are none.
+    fn pixels_between(&self, i: usize, low: f64, high: f64) -> Option<[u32; 2]> {
+        let pixel = |w: f64, sign: f64| {
+            let pad = PAD_WAY * (w.abs() + self.offset[i].abs());
+            let at = self.anchor[i] + (w - self.offset[i] + sign * pad) / self.step[i];
+            at + sign * (self.margin + PAD_PIXELS)
+        };
+        let (low, high) = (pixel(low, -1.0).ceil(), pixel(high, 1.0).floor());
+        let last = f64::from(self.pixels[i] - 1);
+        if !(self.step[i] > LEAST_STEP && low.is_finite() && high.is_finite()) {
+            return Some([0, self.pixels[i] - 1]);
+        }
+        if low > last || high < 0.0 || low > high {
+            return None;
+        }
+        Some([low.max(0.0) as u32, high.min(last) as u32])
+    }
+
     /// The largest 1/s of the sphere's hits, and the pixels that it may cover; None if it covers none.
-    fn of(&self, center: DVec3, radius: f64) -> Option<(f32, Covered)> {
+    fn of(&self, center: DVec3, radius: f64) -> Option<Seen> {
         let c = (center - self.viewpoint) * self.unit;
         let r = radius * self.unit;
         let (depth, d) = (-c.z, self.distance);
@@ -252,24 +317,8 @@ impl Outlines {
             let root = r * (side * side + square).sqrt();
             let middle = side * depth;
             let pad = PAD * (middle.abs() + root);
-            let pixel = |w: f64, sign: f64| {
-                let w = d * (w + sign * pad) / square;
-                let pad = PAD_WAY * (w.abs() + self.offset[i].abs());
-                let at = self.anchor[i] + (w - self.offset[i] + sign * pad) / self.step[i];
-                at + sign * (self.margin + PAD_PIXELS)
-            };
-            let (low, high) = (
-                pixel(middle - root, -1.0).ceil(),
-                pixel(middle + root, 1.0).floor(),
-            );
-            let last = f64::from(self.pixels[i] - 1);
-            if !(self.step[i] > LEAST_STEP && low.is_finite() && high.is_finite()) {
-                continue;
-            }
-            if low > last || high < 0.0 || low > high {
-                return None;
-            }
-            *covered = [low.max(0.0) as u32, high.min(last) as u32];
+            let at = |w: f64| d * w / square;
+            *covered = self.pixels_between(i, at(middle - root - pad), at(middle + root + pad))?;
         }
         Some((max_inverse, covered))
     }

@@ -4,7 +4,8 @@ use glam::{DVec2, DVec3};
 
 use super::camera;
 use super::extent::{Rectangle, rows};
-use crate::real::rational::{Ratio, abs, is_zero, parity, power_of_two, ratio, ratio3, two_to};
+use super::triangle;
+use crate::real::rational::{Ratio, abs, parity, power_of_two, ratio, two_to};
 use crate::real::{Real, V3};
 use crate::scene::{self, Extent, Object, Shape, TextureMode};
 
@@ -93,7 +94,7 @@ impl<R: Real> Surface<R> {
     /// Prepares the surface of `object`.
     pub fn new(scene: &scene::Scene, object: &Object) -> Self {
         match (&object.shape, object.surface) {
-            (Shape::Plane { .. } | Shape::Sphere { .. }, scene::Surface::Plain) => Self::Plain,
+            (_, scene::Surface::Plain) => Self::Plain,
             (
                 &Shape::Plane { normal, point, .. },
                 scene::Surface::Tiled {
@@ -105,12 +106,21 @@ impl<R: Real> Surface<R> {
                 let materials = [object.material, altmaterial];
                 let camera = &scene.camera;
                 Self::Tiled(Box::new(match xdir {
-                    None => Tiled::along_axes(camera, normal, point, dimension, materials),
+                    None => {
+                        let flat = flat_axis(normal, point);
+                        Tiled::along_axes(camera, flat, dimension, materials)
+                    }
                     Some(xdir) => Tiled::along_rows(camera, normal, xdir, dimension, materials),
                 }))
             }
             (&Shape::Plane { normal, point, .. }, scene::Surface::Procedural { shader }) => {
-                Self::Pplane(Box::new(Pplane::new(&scene.camera, normal, point, shader)))
+                let flat = flat_axis(normal, point);
+                Self::Pplane(Box::new(Pplane::new(&scene.camera, flat, point, shader)))
+            }
+            (Shape::Triangle(triangle), scene::Surface::Procedural { shader }) => {
+                let flat = triangle::flat_axis(triangle);
+                let point = triangle.vertices[0];
+                Self::Pplane(Box::new(Pplane::new(&scene.camera, flat, point, shader)))
             }
             (Shape::Sphere { .. }, scene::Surface::Procedural { shader }) => Self::Psphere(shader),
             (
@@ -131,10 +141,16 @@ impl<R: Real> Surface<R> {
                     extent: Extent::Unbounded,
                     ..
                 }
-                | Shape::Sphere { .. },
+                | Shape::Sphere { .. }
+                | Shape::Triangle(_)
+                | Shape::Quadric(_),
                 scene::Surface::Textured { .. },
             )
-            | (Shape::Sphere { .. }, scene::Surface::Tiled { .. }) => Self::Plain,
+            | (
+                Shape::Sphere { .. } | Shape::Triangle(_) | Shape::Quadric(_),
+                scene::Surface::Tiled { .. },
+            ) => Self::Plain,
+            (Shape::Quadric(_), scene::Surface::Procedural { .. }) => Self::Plain,
         }
     }
 }
@@ -143,16 +159,20 @@ impl<R: Real> Tiled<R> {
     /// Tiles along world x and z; `materials` are the plane's own and the other.
     fn along_axes(
         camera: &scene::Camera,
-        normal: DVec3,
-        point: DVec3,
+        flat: Option<(usize, f64)>,
         dimension: DVec2,
         materials: [usize; 2],
     ) -> Self {
         let view = camera.viewpoint;
         let scale = camera::exponent(view.z);
         let index = |axis: usize, d: f64| {
-            let fixed_coordinate = fixed_coordinate(normal, point, axis);
-            TileIndex::new(view[axis], fixed_coordinate, TILE_SHIFT, d, scale)
+            TileIndex::new(
+                view[axis],
+                fixed_coordinate(flat, axis),
+                TILE_SHIFT,
+                d,
+                scale,
+            )
         };
         Self {
             rows: None,
@@ -212,20 +232,21 @@ impl<R: Real> Textured<R> {
 }
 
 impl<R: Real> Pplane<R> {
-    fn new(camera: &scene::Camera, normal: DVec3, point: DVec3, shader: u32) -> Self {
+    fn new(camera: &scene::Camera, flat: Option<(usize, f64)>, point: DVec3, shader: u32) -> Self {
         let view = camera.viewpoint;
         let scale = camera::exponent(view.z);
         let index = |axis: usize| {
-            let fixed_coordinate = fixed_coordinate(normal, point, axis);
             TileIndex::new(
                 view[axis],
-                fixed_coordinate,
+                fixed_coordinate(flat, axis),
                 PPLANE_SHIFT,
                 PPLANE_TILE,
                 scale,
             )
         };
-        let from_point = |axis: usize| FromPoint::new(view[axis], normal, point, axis, scale);
+        let from_point = |axis: usize| {
+            FromPoint::new(view[axis], fixed_coordinate(flat, axis), point[axis], scale)
+        };
         Self {
             shader,
             index: [index(0), index(1), index(2)],
@@ -234,12 +255,17 @@ impl<R: Real> Pplane<R> {
     }
 }
 
-/// The coordinate that every point of the plane shares, if it is perpendicular to that axis.
-fn fixed_coordinate(normal: DVec3, point: DVec3, axis: usize) -> Option<f64> {
-    let n = ratio3(normal);
+/// The axis that a plane is perpendicular to, and the coordinate that all its points share, if there is one.
+fn flat_axis(normal: DVec3, point: DVec3) -> Option<(usize, f64)> {
+    let is_flat = |axis: usize| (0..3).all(|i| i == axis || normal[i] == 0.0);
     (0..3)
-        .all(|i| i == axis || is_zero(&n[i]))
-        .then(|| point[axis])
+        .find(|&axis| is_flat(axis))
+        .map(|axis| (axis, point[axis]))
+}
+
+/// The coordinate along this axis, if all points share it.
+fn fixed_coordinate(flat: Option<(usize, f64)>, axis: usize) -> Option<f64> {
+    flat.filter(|flat| flat.0 == axis).map(|flat| flat.1)
 }
 
 impl<R: Real> TileIndex<R> {
@@ -283,8 +309,8 @@ impl<R: Real> TileIndex<R> {
 }
 
 impl<R: Real> FromPoint<R> {
-    fn new(view: f64, normal: DVec3, point: DVec3, axis: usize, scale: i32) -> Self {
-        if fixed_coordinate(normal, point, axis).is_some() {
+    fn new(view: f64, fixed_coordinate: Option<f64>, point: f64, scale: i32) -> Self {
+        if fixed_coordinate.is_some() {
             return Self {
                 per_unit: R::zero(),
                 offset: R::zero(),
@@ -292,7 +318,7 @@ impl<R: Real> FromPoint<R> {
         }
         Self {
             per_unit: R::ratio(&power_of_two(scale)),
-            offset: R::ratio(&(ratio(point[axis]) - ratio(view))),
+            offset: R::ratio(&(ratio(point) - ratio(view))),
         }
     }
 

@@ -66,11 +66,13 @@ impl<R: Real> WorldPlane<R> {
             fixed_coordinate: axis.map(|axis| (axis, R::ratio(&(&from_viewpoint[axis] / &unit)))),
             extent,
             lights_on_surface: lights_on_plane(scene, normal, point),
-            low_light: low_light(scene, normal, point).map(|light| {
-                let location = ratio3(scene.lights[light].location);
-                let height = dot(&n, &sub(&location, &ratio3(point)));
-                (light, R::ratio(&(height / &largest / &unit)) / length)
-            }),
+            low_light: low_light(scene.camera.viewpoint, &scene.lights, normal, point).map(
+                |light| {
+                    let location = ratio3(scene.lights[light].location);
+                    let height = dot(&n, &sub(&location, &ratio3(point)));
+                    (light, R::ratio(&(height / &largest / &unit)) / length)
+                },
+            ),
         }
     }
 }
@@ -95,11 +97,16 @@ const LOW: f64 = 1.0 / 32.0;
 
 /// The light that is nearest to the plane without lying in it, if it is nearer than `LOW`; of those that the GPU has
 /// bits for.
-fn low_light(scene: &Scene, normal: DVec3, point: DVec3) -> Option<usize> {
-    let lights = scene.lights.iter().map(|light| light.location);
+pub(super) fn low_light(
+    viewpoint: DVec3,
+    lights: &[Light],
+    normal: DVec3,
+    point: DVec3,
+) -> Option<usize> {
+    let lights = lights.iter().map(|light| light.location);
     let heights = lights.map(|light| {
         let height = normal.dot(light - point).abs();
-        let distance = (light - scene.camera.viewpoint).length();
+        let distance = (light - viewpoint).length();
         (height, height < LOW * normal.length() * distance)
     });
     (0..32)

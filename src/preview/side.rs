@@ -210,7 +210,7 @@ fn object(ui: &mut Ui, session: &Session, scene: &Scene, i: usize, wanted: &mut 
                 wanted,
             );
         }
-        Shape::Plane { .. } => {}
+        Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => {}
     }
     let material = |index: usize| scene.materials.get(index).map_or("", |m| m.name.as_str());
     let mut text = format!("material {}", material(object.material));

@@ -7,8 +7,8 @@
 use std::fmt;
 
 use crate::prepare::camera::{origin, step};
-use crate::real::rational::{Ratio, dot, is_positive, is_zero, ratio, ratio3, sub};
-use crate::scene::{Camera, Extent, Rectangle, Scene, Shape};
+use crate::real::rational::{Ratio, cross, dot, is_positive, is_zero, ratio, ratio3, sub};
+use crate::scene::{Camera, Extent, Rectangle, Scene, Shape, Triangle};
 
 use super::digits;
 
@@ -47,6 +47,11 @@ pub(super) enum Reason {
         /// How long the side is.
         length: f64,
     },
+    /// The plane of a triangle is met beside it, beyond the side between these vertices.
+    BeyondEdge {
+        /// Their numbers, from 1.
+        vertices: [usize; 2],
+    },
     /// The discriminant is negative.
     Passes,
     /// The discriminant is 0.
@@ -72,6 +77,12 @@ impl fmt::Display for Reason {
                     digits::short(*at)
                 )
             }
+            Self::BeyondEdge {
+                vertices: [from, to],
+            } => write!(
+                f,
+                "its plane is met outside the triangle: beyond the side from vertex{from} to vertex{to}"
+            ),
             Self::Passes => f.write_str("the ray passes by"),
             Self::Tangent => f.write_str("the ray touches it, which is a miss"),
             Self::Inside => f.write_str("the viewpoint is inside it"),
@@ -108,7 +119,29 @@ impl ExactRay {
                 self.plane(&normal, &point, &extent, screen_tolerance)
             }
             Shape::Sphere { center, radius } => self.sphere(&ratio3(center), &ratio(radius)),
+            Shape::Triangle(triangle) => self.triangle(&triangle, screen_tolerance),
+            Shape::Quadric(_) => HitOrMiss::Miss(Reason::Passes),
         }
+    }
+
+    fn triangle(&self, triangle: &Triangle, screen_tolerance: f64) -> HitOrMiss {
+        let vertices = triangle.vertices.map(ratio3);
+        let edge = |from: usize, to: usize| sub(&vertices[to], &vertices[from]);
+        let normal = cross(&edge(0, 1), &edge(0, 2));
+        let hit = match self.plane_point(&normal, &vertices[0], screen_tolerance) {
+            Ok(hit) => hit,
+            Err(reason) => return HitOrMiss::Miss(reason),
+        };
+        let beyond = [(0, 1), (1, 2), (2, 0)].into_iter().find(|&(from, to)| {
+            let inward = cross(&normal, &edge(from, to));
+            let p = dot(&inward, &sub(&hit, &vertices[from]));
+            !is_positive(&p) && !is_zero(&p)
+        });
+        beyond.map_or(HitOrMiss::Hit, |(from, to)| {
+            HitOrMiss::Miss(Reason::BeyondEdge {
+                vertices: [from + 1, to + 1],
+            })
+        })
     }
 
     fn plane(
@@ -118,27 +151,41 @@ impl ExactRay {
         extent: &Extent,
         screen_tolerance: f64,
     ) -> HitOrMiss {
-        let along = dot(normal, &self.w);
-        let ahead = dot(normal, &sub(point, &self.viewpoint));
-        if is_zero(&along) {
-            return HitOrMiss::Miss(Reason::Parallel);
-        }
-        let s = ahead / along;
-        if is_zero(&s) {
-            return HitOrMiss::Miss(Reason::ThroughViewpoint);
-        }
-        if !is_positive(&s) {
-            return HitOrMiss::Miss(Reason::Behind);
-        }
-        let hit = [0, 1, 2].map(|i| &self.viewpoint[i] + &self.w[i] * &s);
-        if hit[2] > ratio(screen_tolerance) {
-            return HitOrMiss::Miss(Reason::BeforeScreen(hit[2].to_f64().value()));
-        }
+        let hit = match self.plane_point(normal, point, screen_tolerance) {
+            Ok(hit) => hit,
+            Err(reason) => return HitOrMiss::Miss(reason),
+        };
         let outside = match extent {
             Extent::Unbounded => None,
             Extent::Rectangle(rectangle) => outside(rectangle, normal, &sub(&hit, point)),
         };
         outside.map_or(HitOrMiss::Hit, HitOrMiss::Miss)
+    }
+
+    /// Where the ray meets the plane, if that counts.
+    fn plane_point(
+        &self,
+        normal: &[Ratio; 3],
+        point: &[Ratio; 3],
+        screen_tolerance: f64,
+    ) -> Result<[Ratio; 3], Reason> {
+        let along = dot(normal, &self.w);
+        let ahead = dot(normal, &sub(point, &self.viewpoint));
+        if is_zero(&along) {
+            return Err(Reason::Parallel);
+        }
+        let s = ahead / along;
+        if is_zero(&s) {
+            return Err(Reason::ThroughViewpoint);
+        }
+        if !is_positive(&s) {
+            return Err(Reason::Behind);
+        }
+        let hit = [0, 1, 2].map(|i| &self.viewpoint[i] + &self.w[i] * &s);
+        if hit[2] > ratio(screen_tolerance) {
+            return Err(Reason::BeforeScreen(hit[2].to_f64().value()));
+        }
+        Ok(hit)
     }
 
     fn sphere(&self, center: &[Ratio; 3], radius: &Ratio) -> HitOrMiss {
@@ -169,8 +216,7 @@ fn outside(rectangle: &Rectangle, normal: &[Ratio; 3], v: &[Ratio; 3]) -> Option
     let xdir = ratio3(rectangle.xdir);
     let (nn, nx) = (dot(normal, normal), dot(normal, &xdir));
     let first = [0, 1, 2].map(|i| &xdir[i] * &nn - &normal[i] * &nx);
-    let second =
-        [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &normal[i] * &first[j] - &normal[j] * &first[i]);
+    let second = cross(normal, &first);
     for (side, along) in [first, second].iter().enumerate() {
         let length = rectangle.dimensions[side];
         let (p, size2) = (dot(along, v), dot(along, along));
@@ -247,6 +293,40 @@ mod tests {
             outside(1, -1.0, 1.0),
             HitOrMiss::Hit,
             outside(0, 98.0 / 4802.0_f64.sqrt(), root.next_down()),
+        ];
+        assert_eq!(answers(&objects.join(" "), 0.0), expected);
+    }
+
+    #[test]
+    fn triangles_answer_why() {
+        // The ray meets the plane at (1, 1, −3).
+        let triangle = |vertices: &str| {
+            let [a, b, c] =
+                <[&str; 3]>::try_from(vertices.split(", ").collect::<Vec<_>>()).unwrap();
+            format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}")
+        };
+        let objects = [
+            triangle("0 0 -3, 3 0 -3, 0 3 -3"),
+            triangle("0 3 -3, 3 0 -3, 0 0 -3"),
+            triangle("1 1 -3, 3 0 -3, 0 -3 -3"),
+            triangle("0 0 -3, 2 0 -3, 0 2 -3"),
+            triangle("0 0 -3, 2 0 -3, 0 1.9999999999999998 -3"),
+            triangle("0 2 -3, 2 2 -3, 1 4 -3"),
+            triangle("0 0 3, 3 0 3, 0 3 3"),
+        ];
+        let beyond = |from, to| {
+            HitOrMiss::Miss(Reason::BeyondEdge {
+                vertices: [from, to],
+            })
+        };
+        let expected = [
+            HitOrMiss::Hit,
+            HitOrMiss::Hit,
+            HitOrMiss::Hit,
+            HitOrMiss::Hit,
+            beyond(2, 3),
+            beyond(1, 2),
+            HitOrMiss::Miss(Reason::Behind),
         ];
         assert_eq!(answers(&objects.join(" "), 0.0), expected);
     }

@@ -23,6 +23,11 @@ pub fn dot(a: &[Ratio; 3], b: &[Ratio; 3]) -> Ratio {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
+/// The outer product.
+pub fn cross(a: &[Ratio; 3], b: &[Ratio; 3]) -> [Ratio; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
+}
+
 /// a − b.
 pub fn sub(a: &[Ratio; 3], b: &[Ratio; 3]) -> [Ratio; 3] {
     [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]

@@ -1,7 +1,9 @@
 //! A scene built in code: the course's "static model", through the same checks as a file.
 //!
 //! In the flow text → lex → parse → [`Scene`] a [`SceneBuilder`] stands in for the first three: it fills the same
-//! drafts, and the rows of the `table` say what they must keep.
+//! drafts, and the rows of the `table` say what they must keep. Objects and lights are in `objects`.
+
+mod objects;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -13,8 +15,8 @@ use glam::{DVec2, DVec3};
 
 use super::check;
 use super::draft::{Assembly, Draft, TexturePicture};
-use super::kind::{Class, EntityKind};
-use super::model::{Material, Scene, Texels, TextureMode};
+use super::kind::EntityKind;
+use super::model::{Material, Scene, Texels};
 use super::table;
 use super::texture::Pictures;
 
@@ -186,146 +188,6 @@ impl SceneBuilder {
         TextureId(index)
     }
 
-    /// Adds a plane: its normal (not 0) and a point on it.
-    pub fn plane(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        normal: impl Into<DVec3>,
-        point: impl Into<DVec3>,
-    ) -> &mut Self {
-        let draft = plane(name, material, normal, point);
-        self.add(EntityKind::Object(Class::Plane), draft)
-    }
-
-    /// Adds a sphere: its center and radius (> 0).
-    pub fn sphere(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        center: impl Into<DVec3>,
-        radius: f64,
-    ) -> &mut Self {
-        let draft = sphere(name, material, center, radius);
-        self.add(EntityKind::Object(Class::Sphere), draft)
-    }
-
-    /// Adds a plane with tiles of two materials: the size of a tile (> 0), and the direction of its first side (not
-    /// parallel to the normal), if tiles do not follow world x and z.
-    #[expect(clippy::too_many_arguments, reason = "one a line of the scene file")]
-    pub fn tiled_plane(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        normal: impl Into<DVec3>,
-        point: impl Into<DVec3>,
-        altmaterial: MaterialId,
-        dimension: impl Into<DVec2>,
-        xdir: Option<DVec3>,
-    ) -> &mut Self {
-        let mut draft = plane(name, material, normal, point);
-        draft.altmaterial = altmaterial.0;
-        draft.dimension = dimension.into().to_array();
-        draft.xdir = xdir.map(|xdir| xdir.to_array());
-        self.add(EntityKind::Object(Class::Tiled), draft)
-    }
-
-    /// Adds a plane with a procedural shader, below [`table::PPLANE_SHADERS`].
-    pub fn pplane(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        normal: impl Into<DVec3>,
-        point: impl Into<DVec3>,
-        shader: u32,
-    ) -> &mut Self {
-        let draft = Draft {
-            shader: [f64::from(shader)],
-            ..plane(name, material, normal, point)
-        };
-        self.add(EntityKind::Object(Class::ProceduralPlane), draft)
-    }
-
-    /// Adds a sphere with a procedural shader, below [`table::PSPHERE_SHADERS`].
-    pub fn psphere(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        center: impl Into<DVec3>,
-        radius: f64,
-        shader: u32,
-    ) -> &mut Self {
-        let draft = Draft {
-            shader: [f64::from(shader)],
-            ..sphere(name, material, center, radius)
-        };
-        self.add(EntityKind::Object(Class::ProceduralSphere), draft)
-    }
-
-    /// Adds a rectangle with a corner at `point`: the direction of its first side (not parallel to the normal) and the
-    /// lengths of its sides (> 0).
-    pub fn fplane(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        normal: impl Into<DVec3>,
-        point: impl Into<DVec3>,
-        xdir: impl Into<DVec3>,
-        dimensions: impl Into<DVec2>,
-    ) -> &mut Self {
-        let draft = finite(plane(name, material, normal, point), xdir, dimensions);
-        self.add(EntityKind::Object(Class::Finite), draft)
-    }
-
-    /// Adds a rectangle with a picture on it.
-    #[expect(clippy::too_many_arguments, reason = "one a line of the scene file")]
-    pub fn texplane(
-        &mut self,
-        name: &str,
-        material: MaterialId,
-        normal: impl Into<DVec3>,
-        point: impl Into<DVec3>,
-        xdir: impl Into<DVec3>,
-        dimensions: impl Into<DVec2>,
-        texture: TextureId,
-        mode: TextureMode,
-    ) -> &mut Self {
-        let mut draft = finite(plane(name, material, normal, point), xdir, dimensions);
-        draft.texture = texture.0;
-        draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
-        self.add(EntityKind::Object(Class::Textured), draft)
-    }
-
-    /// Adds a light: where it is, and how bright (≥ 0).
-    pub fn light(
-        &mut self,
-        name: &str,
-        location: impl Into<DVec3>,
-        emissivity: impl Into<DVec3>,
-    ) -> &mut Self {
-        let draft = light(name, location, emissivity);
-        self.add(EntityKind::Light { spot: false }, draft)
-    }
-
-    /// Adds a spotlight: a light with a cone towards `point` (not its location), of half angle `theta` in degrees
-    /// (0 < theta ≤ 180).
-    pub fn spotlight(
-        &mut self,
-        name: &str,
-        location: impl Into<DVec3>,
-        emissivity: impl Into<DVec3>,
-        point: impl Into<DVec3>,
-        theta: f64,
-    ) -> &mut Self {
-        let point = point.into().to_array();
-        let draft = Draft {
-            point,
-            theta: [theta],
-            ..light(name, location, emissivity)
-        };
-        self.add(EntityKind::Light { spot: true }, draft)
-    }
-
     /// The scene.
     ///
     /// # Errors
@@ -381,44 +243,5 @@ fn named(name: &str) -> Draft {
     Draft {
         name: name.to_owned(),
         ..Draft::default()
-    }
-}
-
-fn plane(
-    name: &str,
-    material: MaterialId,
-    normal: impl Into<DVec3>,
-    point: impl Into<DVec3>,
-) -> Draft {
-    Draft {
-        material: material.0,
-        normal: normal.into().to_array(),
-        point: point.into().to_array(),
-        ..named(name)
-    }
-}
-
-fn sphere(name: &str, material: MaterialId, center: impl Into<DVec3>, radius: f64) -> Draft {
-    Draft {
-        material: material.0,
-        center: center.into().to_array(),
-        radius: [radius],
-        ..named(name)
-    }
-}
-
-fn finite(plane: Draft, xdir: impl Into<DVec3>, dimensions: impl Into<DVec2>) -> Draft {
-    Draft {
-        xdir: Some(xdir.into().to_array()),
-        dimension: dimensions.into().to_array(),
-        ..plane
-    }
-}
-
-fn light(name: &str, location: impl Into<DVec3>, emissivity: impl Into<DVec3>) -> Draft {
-    Draft {
-        location: location.into().to_array(),
-        emissivity: emissivity.into().to_array(),
-        ..named(name)
     }
 }

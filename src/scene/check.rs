@@ -80,22 +80,30 @@ impl Parser<'_> {
     }
 
     pub(super) fn check_relation(&mut self, block: &Block) {
-        let Some(relation) = &block.entity.relation else {
-            return;
-        };
         let place = |name: &str| {
             let (index, _) = block.entity.row(name.as_bytes())?;
             block.given[index].clone().filter(|_| block.good[index])
         };
-        if let (Some(span), Some(other)) = (place(relation.attribute), place(relation.other))
-            && (relation.broken)(&block.draft)
-        {
-            let error = Diagnostic::new(
-                span,
-                format!("`{}` {}", relation.attribute, relation.message),
-            );
-            self.errors
-                .report(error.also(other, format!("`{}` is given here", relation.other)));
+        // One mistake is reported once, so what is asked of attributes that contradict others is not asked.
+        for relation in block.entity.relations {
+            let Some(span) = place(relation.attribute) else {
+                continue;
+            };
+            let others = relation.others.iter().map(|other| place(other));
+            let Some(others) = others.collect::<Option<Vec<_>>>() else {
+                continue;
+            };
+            if (relation.broken)(&block.draft) {
+                let mut error = Diagnostic::new(
+                    span,
+                    format!("`{}` {}", relation.attribute, relation.message),
+                );
+                for (name, other) in relation.others.iter().zip(others) {
+                    error = error.also(other, format!("`{name}` is given here"));
+                }
+                self.errors.report(error);
+                return;
+            }
         }
     }
 
@@ -133,7 +141,7 @@ pub(super) fn faults(
     for row in entity.rows() {
         let (count, kind) = match row.take {
             Take::Numbers(_, field) | Take::Integers(_, field) | Take::OneOrThree(field) => {
-                if row.name == "xdir" && draft.xdir.is_none() {
+                if (row.left_out)(draft) {
                     continue;
                 }
                 faults.extend(row_fault(row, field(draft)));
@@ -147,11 +155,9 @@ pub(super) fn faults(
             faults.push(format!("`{}` is a {kind} of another builder", row.name));
         }
     }
-    if let Some(relation) = &entity.relation
-        && faults.is_empty()
-        && (relation.broken)(draft)
-    {
-        faults.push(format!("`{}` {}", relation.attribute, relation.message));
+    if faults.is_empty() {
+        let broken = entity.relations.iter().find(|r| (r.broken)(draft));
+        faults.extend(broken.map(|r| format!("`{}` {}", r.attribute, r.message)));
     }
     faults
 }
@@ -192,7 +198,7 @@ pub(crate) fn fault(entity: &str, attribute: &str, values: &[f64]) -> Option<Str
 /// As in a scene from a file, zero is never negative.
 pub(super) fn positive_zeros(kind: EntityKind, mut draft: Draft) -> Draft {
     for row in table::of(kind).rows() {
-        if row.name == "xdir" && draft.xdir.is_none() {
+        if (row.left_out)(&draft) {
             continue;
         }
         if let Take::Numbers(_, field) | Take::OneOrThree(field) = row.take {

@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::kind::{Class, EntityKind};
+use super::kind::{Class, EntityKind, LightClass};
 use super::model::{
-    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
-    Texture, TextureMode,
+    Beam, Camera, Cone, Extent, Light, Material, Object, ProjectorPicture, Quadric, Rectangle,
+    Scene, Shape, Surface, Texels, Texture, TextureMode, Triangle,
 };
 
 /// The fields of all entities; an entity uses those that its rows name.
@@ -48,6 +48,14 @@ pub(super) struct Draft {
     pub(super) location: [f64; 3],
     pub(super) emissivity: [f64; 3],
     pub(super) theta: [f64; 1],
+    pub(super) vertices: [[f64; 3]; 3],
+    /// The side that a triangle shows.
+    pub(super) facing: Option<[f64; 3]>,
+    /// A triangle's point.
+    pub(super) idle_point: Option<[f64; 3]>,
+    pub(super) coefficients: [f64; 10],
+    pub(super) lower: Option<[f64; 3]>,
+    pub(super) upper: Option<[f64; 3]>,
 }
 
 /// A picture that was read for a texture.
@@ -122,16 +130,13 @@ impl Assembly {
                     texels: picture.texels,
                 });
             }
-            EntityKind::Light { spot } => {
-                let cone = Cone {
-                    point: draft.point.into(),
-                    theta: draft.theta[0],
-                };
+            EntityKind::Light(class) => {
+                let beam = draft.beam(class);
                 self.lights.push(Light {
                     name: draft.name,
                     location: draft.location.into(),
                     emissivity: draft.emissivity.into(),
-                    cone: spot.then_some(cone),
+                    beam,
                 });
             }
             EntityKind::Object(class) => {
@@ -178,9 +183,16 @@ impl Draft {
             point: self.point.into(),
             extent,
         };
-        let rectangle = Extent::Rectangle(Rectangle {
-            xdir: self.xdir.unwrap_or_default().into(),
-            dimensions: self.dimension.into(),
+        let rectangle = Extent::Rectangle(self.rectangle());
+        let triangle = Shape::Triangle(Triangle {
+            vertices: self.vertices.map(DVec3::from),
+            normal: self.facing.map(DVec3::from),
+            point: self.idle_point.map(DVec3::from),
+        });
+        let quadric = Shape::Quadric(Quadric {
+            coefficients: self.coefficients,
+            lower: self.lower.map(DVec3::from),
+            upper: self.upper.map(DVec3::from),
         });
         let procedural = Surface::Procedural {
             shader: self.shader[0] as u32,
@@ -191,6 +203,10 @@ impl Draft {
             Class::Finite => (plane(rectangle), Surface::Plain),
             Class::Sphere => (sphere, Surface::Plain),
             Class::ProceduralSphere => (sphere, procedural),
+            Class::Triangle => (triangle, Surface::Plain),
+            Class::ProceduralTriangle => (triangle, procedural),
+            Class::Quadric => (quadric, Surface::Plain),
+            Class::ProceduralQuadric => (quadric, procedural),
             Class::Tiled => {
                 let (dimension, xdir) = (DVec2::from(self.dimension), self.xdir.map(DVec3::from));
                 (
@@ -202,21 +218,57 @@ impl Draft {
                     },
                 )
             }
-            Class::Textured => {
-                let mode = if self.mode[0] == 0.0 {
-                    TextureMode::Fit
-                } else {
-                    TextureMode::Tile
-                };
-                (
-                    plane(rectangle),
-                    Surface::Textured {
-                        texture: self.texture,
-                        mode,
-                    },
-                )
-            }
+            Class::Textured => (
+                plane(rectangle),
+                Surface::Textured {
+                    texture: self.texture,
+                    mode: self.texture_mode(),
+                },
+            ),
         }
+    }
+
+    fn beam(&self, class: LightClass) -> Beam {
+        match class {
+            LightClass::Light => Beam::Everywhere,
+            LightClass::Spotlight => Beam::Cone(Cone {
+                point: self.point.into(),
+                theta: self.theta[0],
+            }),
+            LightClass::Projector => Beam::Picture(ProjectorPicture {
+                normal: self.normal.into(),
+                point: self.point.into(),
+                rectangle: self.rectangle(),
+                texture: self.texture,
+                mode: self.texture_mode(),
+            }),
+        }
+    }
+
+    fn rectangle(&self) -> Rectangle {
+        Rectangle {
+            xdir: self.xdir.unwrap_or_default().into(),
+            dimensions: self.dimension.into(),
+        }
+    }
+
+    fn set_rectangle(&mut self, rectangle: &Rectangle) {
+        let Rectangle { xdir, dimensions } = *rectangle;
+        self.xdir = Some(xdir.to_array());
+        self.dimension = dimensions.to_array();
+    }
+
+    fn texture_mode(&self) -> TextureMode {
+        if self.mode[0] == 0.0 {
+            TextureMode::Fit
+        } else {
+            TextureMode::Tile
+        }
+    }
+
+    fn set_texture(&mut self, texture: usize, mode: TextureMode) {
+        self.texture = texture;
+        self.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
     }
 
     /// A camera, to list or to check.
@@ -282,7 +334,7 @@ impl Draft {
             name,
             location,
             emissivity,
-            cone,
+            beam,
         } = light;
         let mut draft = Self {
             name: name.clone(),
@@ -290,8 +342,22 @@ impl Draft {
             emissivity: emissivity.to_array(),
             ..Self::default()
         };
-        if let Some(Cone { point, theta }) = *cone {
-            (draft.point, draft.theta) = (point.to_array(), [theta]);
+        match beam {
+            Beam::Everywhere => {}
+            Beam::Cone(Cone { point, theta }) => {
+                (draft.point, draft.theta) = (point.to_array(), [*theta]);
+            }
+            Beam::Picture(ProjectorPicture {
+                normal,
+                point,
+                rectangle,
+                texture,
+                mode,
+            }) => {
+                (draft.normal, draft.point) = (normal.to_array(), point.to_array());
+                draft.set_rectangle(rectangle);
+                draft.set_texture(*texture, *mode);
+            }
         }
         (light.kind(), draft)
     }
@@ -321,11 +387,26 @@ impl Draft {
                 (draft.normal, draft.point) = (normal.to_array(), point.to_array());
                 match extent {
                     Extent::Unbounded => {}
-                    Extent::Rectangle(Rectangle { xdir, dimensions }) => {
-                        draft.xdir = Some(xdir.to_array());
-                        draft.dimension = dimensions.to_array();
-                    }
+                    Extent::Rectangle(rectangle) => draft.set_rectangle(&rectangle),
                 }
+            }
+            Shape::Triangle(Triangle {
+                vertices,
+                normal,
+                point,
+            }) => {
+                draft.vertices = vertices.map(|vertex| vertex.to_array());
+                draft.facing = normal.map(|normal| normal.to_array());
+                draft.idle_point = point.map(|point| point.to_array());
+            }
+            Shape::Quadric(Quadric {
+                coefficients,
+                lower,
+                upper,
+            }) => {
+                draft.coefficients = coefficients;
+                draft.lower = lower.map(|lower| lower.to_array());
+                draft.upper = upper.map(|upper| upper.to_array());
             }
         }
         match *surface {
@@ -339,10 +420,7 @@ impl Draft {
                 (draft.dimension, draft.altmaterial) = (dimension.to_array(), altmaterial);
                 draft.xdir = xdir.map(|xdir| xdir.to_array());
             }
-            Surface::Textured { texture, mode } => {
-                draft.texture = texture;
-                draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
-            }
+            Surface::Textured { texture, mode } => draft.set_texture(texture, mode),
         }
         (EntityKind::Object(object.class()), draft)
     }

@@ -11,11 +11,19 @@ pub(super) enum EntityKind {
     Texture,
     /// A visible object.
     Object(Class),
-    /// A light, with or without a cone.
-    Light {
-        /// Is it a spotlight?
-        spot: bool,
-    },
+    /// A light.
+    Light(LightClass),
+}
+
+/// The classes of lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum LightClass {
+    /// `light`
+    Light,
+    /// `spotlight`
+    Spotlight,
+    /// `projector`
+    Projector,
 }
 
 /// The classes of visible objects.
@@ -35,6 +43,14 @@ pub(super) enum Class {
     Sphere,
     /// `psphere`
     ProceduralSphere,
+    /// `triangle`
+    Triangle,
+    /// `ptriangle`
+    ProceduralTriangle,
+    /// `quadric`
+    Quadric,
+    /// `pquadric`
+    ProceduralQuadric,
 }
 
 impl EntityKind {
@@ -44,8 +60,11 @@ impl EntityKind {
             Self::Camera => "camera",
             Self::Material => "material",
             Self::Texture => "texture",
-            Self::Light { spot: false } => "light",
-            Self::Light { spot: true } => "spotlight",
+            Self::Light(class) => match class {
+                LightClass::Light => "light",
+                LightClass::Spotlight => "spotlight",
+                LightClass::Projector => "projector",
+            },
             Self::Object(class) => match class {
                 Class::Plane => "plane",
                 Class::Tiled => "tiled_plane",
@@ -54,6 +73,10 @@ impl EntityKind {
                 Class::Textured => "texplane",
                 Class::Sphere => "sphere",
                 Class::ProceduralSphere => "psphere",
+                Class::Triangle => "triangle",
+                Class::ProceduralTriangle => "ptriangle",
+                Class::Quadric => "quadric",
+                Class::ProceduralQuadric => "pquadric",
             },
         }
     }

@@ -24,6 +24,8 @@ pub(super) enum Limit {
     NotZero,
     /// Its z > 0.
     InFront,
+    /// Of all but the last one is not 0.
+    NotConstant,
 }
 
 impl Limit {
@@ -50,6 +52,9 @@ impl Limit {
             Limit::Below(count) => all(!(0.0..f64::from(count)).contains(&values[0])),
             Limit::HalfAngle => each(|value| value > 0.0 && value <= 180.0),
             Limit::NotZero => all(values.iter().all(|value| *value == 0.0)),
+            Limit::NotConstant => all(values
+                .split_last()
+                .is_none_or(|(_, rest)| rest.iter().all(|value| *value == 0.0))),
             Limit::InFront => {
                 if values[2] > 0.0 {
                     Vec::new()
@@ -74,6 +79,9 @@ impl Limit {
             Limit::HalfAngle => String::from("greater than 0 and at most 180 (degrees)"),
             Limit::NotZero => String::from("a direction, not 0 0 0"),
             Limit::InFront => String::from("in front of the screen: its z greater than 0"),
+            Limit::NotConstant => {
+                String::from("an equation in x, y or z: of the first nine one is not 0")
+            }
         }
     }
 }

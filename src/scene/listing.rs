@@ -54,8 +54,7 @@ fn list(
     let entity = table::of(kind);
     writeln!(out, "{:<15} {}", entity.name, draft.name)?;
     for row in entity.rows() {
-        // The only attribute whose absence means something.
-        if row.name == "xdir" && draft.xdir.is_none() {
+        if (row.left_out)(&draft) {
             continue;
         }
         // As the course's listing has it, what every object has stands under its type, its own attributes indented.

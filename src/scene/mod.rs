@@ -31,6 +31,7 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 mod texture;
+pub(crate) mod triangle;
 mod values;
 
 pub(crate) use check::fault;
@@ -43,8 +44,8 @@ pub use listing::list_model;
 pub(crate) use load::read_file;
 pub use load::{LoadError, MAX_FILE, is_same_file, load, load_from};
 pub use model::{
-    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
-    Texture, TextureMode,
+    Beam, Camera, Cone, Extent, Light, Material, Object, ProjectorPicture, Quadric, Rectangle,
+    Scene, Shape, Surface, Texels, Texture, TextureMode, Triangle,
 };
 pub use parse::parse;
 pub use places::{EntityId, Given, Place, Places, line, places};

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::kind::{Class, EntityKind};
+use super::kind::{Class, EntityKind, LightClass};
 
 /// A whole scene: one camera, and lists in the order of the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +88,33 @@ pub enum Shape {
         /// Its radius, > 0.
         radius: f64,
     },
+    /// A triangle.
+    Triangle(Triangle),
+    /// What a quadratic equation in x, y and z describes.
+    Quadric(Quadric),
+}
+
+/// A triangle: the plane through its vertices, between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triangle {
+    /// Its vertices, not in a line.
+    pub vertices: [DVec3; 3],
+    /// Where this is given, the normal (v2 − v1) × (v3 − v1) is turned over if it points to the other side; not
+    /// perpendicular to that.
+    pub normal: Option<DVec3>,
+    /// As a plane has it: read, listed, and without a meaning.
+    pub point: Option<DVec3>,
+}
+
+/// A general quadric surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quadric {
+    /// A to J of A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z = J; of A to I one is not 0.
+    pub coefficients: [f64; 10],
+    /// Only points with coordinates of at least these belong to it.
+    pub lower: Option<DVec3>,
+    /// Only points with coordinates of at most these belong to it; each more than that of `lower`.
+    pub upper: Option<DVec3>,
 }
 
 /// Where a plane ends: straight sides all around, or nowhere.
@@ -122,7 +149,7 @@ pub enum Surface {
         /// The direction of the first side; without it tiles follow world x and z.
         xdir: Option<DVec3>,
     },
-    /// A procedural ambient reflectivity (`pplane`, `psphere`).
+    /// A procedural ambient reflectivity (`pplane`, `psphere`, `ptriangle`, `pquadric`).
     Procedural {
         /// Number of the shader, below the number of shaders for the shape.
         shader: u32,
@@ -154,8 +181,34 @@ pub struct Light {
     pub location: DVec3,
     /// How bright it is (r, g, b), each ≥ 0.
     pub emissivity: DVec3,
-    /// The cone of a spotlight.
-    pub cone: Option<Cone>,
+    /// Where it shines.
+    pub beam: Beam,
+}
+
+/// Where a light shines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Beam {
+    /// To all sides (`light`).
+    Everywhere,
+    /// Into a cone (`spotlight`).
+    Cone(Cone),
+    /// Through a picture (`projector`).
+    Picture(ProjectorPicture),
+}
+
+/// The picture that a projector throws: its light passes through this rectangle alone, which itself is not seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProjectorPicture {
+    /// Perpendicular to the rectangle, of any length but 0.
+    pub normal: DVec3,
+    /// A corner of the rectangle.
+    pub point: DVec3,
+    /// Where it ends.
+    pub rectangle: Rectangle,
+    /// Index into [`Scene::textures`].
+    pub texture: usize,
+    /// How the texture is laid on the rectangle.
+    pub mode: TextureMode,
 }
 
 /// The cone that a spotlight lights.
@@ -206,6 +259,17 @@ impl Object {
                 Shape::Sphere { .. },
                 Surface::Plain | Surface::Tiled { .. } | Surface::Textured { .. },
             ) => Class::Sphere,
+            (Shape::Triangle(_), Surface::Procedural { .. }) => Class::ProceduralTriangle,
+            (Shape::Quadric(_), Surface::Procedural { .. }) => Class::ProceduralQuadric,
+            // Nor have triangles and quadrics.
+            (
+                Shape::Triangle(_),
+                Surface::Plain | Surface::Tiled { .. } | Surface::Textured { .. },
+            ) => Class::Triangle,
+            (
+                Shape::Quadric(_),
+                Surface::Plain | Surface::Tiled { .. } | Surface::Textured { .. },
+            ) => Class::Quadric,
             (Shape::Plane { .. }, Surface::Tiled { .. }) => Class::Tiled,
             (Shape::Plane { .. }, Surface::Procedural { .. }) => Class::ProceduralPlane,
             (Shape::Plane { .. }, Surface::Textured { .. }) => Class::Textured,
@@ -225,8 +289,10 @@ impl Light {
 
     /// The kind of entity that it is.
     pub(super) fn kind(&self) -> EntityKind {
-        EntityKind::Light {
-            spot: self.cone.is_some(),
-        }
+        EntityKind::Light(match self.beam {
+            Beam::Everywhere => LightClass::Light,
+            Beam::Cone(_) => LightClass::Spotlight,
+            Beam::Picture(_) => LightClass::Projector,
+        })
     }
 }

@@ -94,6 +94,8 @@ pub(super) struct Block {
     pub(super) good: [bool; MAX_ROWS],
     /// The first complaint about an attribute that resembles none.
     pub(super) stranger: Option<usize>,
+    /// In which way it is spelt, and by which attribute that is known.
+    pub(super) way: Option<(usize, Range<usize>)>,
 }
 
 impl<'t> Parser<'t> {
@@ -261,6 +263,7 @@ impl<'t> Parser<'t> {
             given: [const { None }; MAX_ROWS],
             good: [false; MAX_ROWS],
             stranger: None,
+            way: None,
         };
         let mut extra = 0;
         let closed = loop {
@@ -308,7 +311,7 @@ impl<'t> Parser<'t> {
             EntityKind::Camera => self.check_first_camera(&title),
             EntityKind::Material => self.materials.define(name),
             EntityKind::Texture => self.textures.define(name),
-            EntityKind::Object(_) | EntityKind::Light { .. } => {}
+            EntityKind::Object(_) | EntityKind::Light(_) => {}
         }
         self.assembly.add(entity.kind, block.draft);
     }

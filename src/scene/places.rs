@@ -81,7 +81,7 @@ pub fn places(text: &[u8]) -> Places {
             EntityKind::Material => places.materials.push(start),
             EntityKind::Texture => places.textures.push(start),
             EntityKind::Object(_) => places.objects.push(start),
-            EntityKind::Light { .. } => places.lights.push(start),
+            EntityKind::Light(_) => places.lights.push(start),
         }
     }
     places
@@ -132,11 +132,12 @@ impl Place {
 fn read(text: &[u8], start: usize) -> Option<Place> {
     let mut lexer = Lexer::at(text, start);
     let (head, entity, name, open) = title(&mut lexer)?;
-    let mut given = Vec::new();
+    let mut found = Vec::new();
     let mut token = lexer.token();
     while token.is_word() {
+        // Where one spelling is two attributes', both have values of the same kind.
         let (_, row) = entity.row(token.text)?;
-        let key = token.span();
+        let key = token;
         let mut values = Vec::new();
         token = lexer.token();
         // A name is one word, whatever it looks like; numbers go on while there are numbers, as in the parser.
@@ -155,9 +156,18 @@ fn read(text: &[u8], start: usize) -> Option<Place> {
         if values.is_empty() {
             return None;
         }
-        let name = row.name;
-        given.push(Given { name, key, values });
+        found.push((key, values));
     }
+    let way = entity.way_of(found.iter().map(|(key, _)| key.text));
+    let given = found.into_iter().map(|(key, values)| {
+        let (_, row, _) = entity.spelt_in(way, key.text)?;
+        Some(Given {
+            name: row.name,
+            key: key.span(),
+            values,
+        })
+    });
+    let given = given.collect::<Option<Vec<_>>>()?;
     (token.kind == TokenKind::Close).then(|| Place {
         span: head.start..token.end(),
         kind: head.span(),

@@ -4,9 +4,10 @@
 //! nowhere else. In the flow text → lex → parse → [`Scene`](super::Scene) this is what `parse` looks words up in.
 
 use super::draft::Draft;
-use super::kind::{Class, EntityKind};
+use super::kind::{Class, EntityKind, LightClass};
 use super::limit::Limit;
 use super::number;
+use super::triangle;
 
 pub use super::limit::MAX_PIXELDIM;
 
@@ -17,8 +18,9 @@ pub use crate::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 pub(super) struct Attribute {
     /// Its name in the file.
     pub(super) name: &'static str,
-    /// Another spelling of its name.
-    pub(super) other_name: Option<&'static str>,
+    /// Other spellings of its name. Where several attributes of an entity have them, those of the same place in the
+    /// lists go together: an entity is spelt in one way.
+    pub(super) other_names: &'static [&'static str],
     /// How many values of which type, and where they go.
     pub(super) take: Take,
     /// What the values must keep.
@@ -27,6 +29,8 @@ pub(super) struct Attribute {
     pub(super) example: &'static str,
     /// Is it an error to leave it out?
     pub(super) required: bool,
+    /// Was it left out, where that means something else than zero?
+    pub(super) left_out: fn(&Draft) -> bool,
 }
 
 /// The values of an attribute: their type, their number, and the field that they go to.
@@ -50,12 +54,12 @@ pub(super) type Field = fn(&mut Draft) -> &mut [f64];
 /// Where a reference goes.
 pub(super) type Index = fn(&mut Draft) -> &mut usize;
 
-/// Two attributes that contradict each other.
+/// Attributes that contradict each other.
 pub(super) struct Relation {
     /// The attribute that the error points at.
     pub(super) attribute: &'static str,
-    /// The attribute that it contradicts.
-    pub(super) other: &'static str,
+    /// The attributes that it contradicts.
+    pub(super) others: &'static [&'static str],
     /// Do they?
     pub(super) broken: fn(&Draft) -> bool,
     /// What is wrong, after "`attribute` ".
@@ -66,33 +70,37 @@ pub(super) struct Relation {
 pub(super) struct Entity {
     /// Its name in the file.
     pub(super) name: &'static str,
+    /// Another spelling of its name.
+    pub(super) other_name: Option<&'static str>,
     /// What it makes.
     pub(super) kind: EntityKind,
     /// Its rows, a list for each level of the class hierarchy.
     levels: &'static [&'static [Attribute]],
     /// What its attributes must keep between them.
-    pub(super) relation: Option<Relation>,
+    pub(super) relations: &'static [Relation],
 }
 
 const fn row(name: &'static str, example: &'static str, take: Take, limit: Limit) -> Attribute {
     Attribute {
         name,
-        other_name: None,
+        other_names: &[],
         take,
         limit,
         example,
         required: true,
+        left_out: |_| false,
     }
 }
 
 const fn optional(name: &'static str, take: Take, limit: Limit) -> Attribute {
     Attribute {
         name,
-        other_name: None,
+        other_names: &[],
         take,
         limit,
         example: "",
         required: false,
+        left_out: |_| false,
     }
 }
 
@@ -192,7 +200,7 @@ const TILED: &[Attribute] = &[
         Limit::None,
     ),
     Attribute {
-        other_name: Some("dimensions"),
+        other_names: &["dimensions"],
         ..row(
             "dimension",
             "1 1",
@@ -200,11 +208,14 @@ const TILED: &[Attribute] = &[
             Limit::Positive,
         )
     },
-    optional(
-        "xdir",
-        Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
-        Limit::NotZero,
-    ),
+    Attribute {
+        left_out: |d| d.xdir.is_none(),
+        ..optional(
+            "xdir",
+            Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
+            Limit::NotZero,
+        )
+    },
 ];
 
 const PROCEDURAL_PLANE: &[Attribute] = &[row(
@@ -281,83 +292,209 @@ const SPOT: &[Attribute] = &[
     ),
 ];
 
-const ALONG_NORMAL: Option<Relation> = Some(Relation {
+const fn vertex(
+    name: &'static str,
+    other_names: &'static [&'static str],
+    example: &'static str,
+    field: Field,
+) -> Attribute {
+    Attribute {
+        other_names,
+        ..row(name, example, Take::Numbers(3, field), Limit::None)
+    }
+}
+
+const TRIANGLE: &[Attribute] = &[
+    vertex("vertex1", &["point1", "v1", "v0"], "0 0 0", |d| {
+        &mut d.vertices[0]
+    }),
+    vertex("vertex2", &["point2", "v2", "v1"], "1 0 0", |d| {
+        &mut d.vertices[1]
+    }),
+    vertex("vertex3", &["point3", "v3", "v2"], "0 1 0", |d| {
+        &mut d.vertices[2]
+    }),
+    Attribute {
+        left_out: |d| d.facing.is_none(),
+        ..optional(
+            "normal",
+            Take::Numbers(3, |d| d.facing.get_or_insert_default()),
+            Limit::NotZero,
+        )
+    },
+    Attribute {
+        left_out: |d| d.idle_point.is_none(),
+        ..optional(
+            "point",
+            Take::Numbers(3, |d| d.idle_point.get_or_insert_default()),
+            Limit::None,
+        )
+    },
+];
+
+const QUADRIC: &[Attribute] = &[
+    row(
+        "coefficients",
+        "1 1 1 0 0 0 0 0 0 1",
+        Take::Numbers(10, |d| &mut d.coefficients),
+        Limit::NotConstant,
+    ),
+    Attribute {
+        left_out: |d| d.lower.is_none(),
+        ..optional(
+            "lower",
+            Take::Numbers(3, |d| d.lower.get_or_insert_default()),
+            Limit::None,
+        )
+    },
+    Attribute {
+        left_out: |d| d.upper.is_none(),
+        ..optional(
+            "upper",
+            Take::Numbers(3, |d| d.upper.get_or_insert_default()),
+            Limit::None,
+        )
+    },
+];
+
+const ALONG_NORMAL: &[Relation] = &[Relation {
     attribute: "xdir",
-    other: "normal",
+    others: &["normal"],
     broken: |d| {
         d.xdir
             .is_some_and(|xdir| number::parallel(&xdir, &d.normal))
     },
     message: "must not be parallel to `normal`: it is projected onto the plane",
-});
+}];
 
-const AIMLESS: Option<Relation> = Some(Relation {
+const AIMLESS: &[Relation] = &[Relation {
     attribute: "point",
-    other: "location",
+    others: &["location"],
     broken: |d| d.point == d.location,
     message: "must differ from `location`: the two give the direction of the light",
-});
+}];
+
+const FLAT: &[Relation] = &[
+    Relation {
+        attribute: "vertex3",
+        others: &["vertex1", "vertex2"],
+        broken: |d| triangle::in_line(&d.vertices),
+        message: "must not lie in a line with `vertex1` and `vertex2`: they are no triangle",
+    },
+    Relation {
+        attribute: "normal",
+        others: &["vertex1", "vertex2", "vertex3"],
+        broken: |d| {
+            d.facing
+                .is_some_and(|normal| triangle::is_in_plane(&normal, &d.vertices))
+        },
+        message: "must not lie in the plane of the triangle: it says which side is the front",
+    },
+];
+
+const EMPTY_BOX: &[Relation] = &[Relation {
+    attribute: "upper",
+    others: &["lower"],
+    broken: |d| {
+        let ends = d.lower.iter().flatten().zip(d.upper.iter().flatten());
+        ends.into_iter().any(|(lower, upper)| lower >= upper)
+    },
+    message: "must be greater than `lower` in x, y and z: nothing would be left between them",
+}];
 
 const fn entity(
     kind: EntityKind,
     levels: &'static [&'static [Attribute]],
-    relation: Option<Relation>,
+    relations: &'static [Relation],
 ) -> Entity {
     Entity {
         name: kind.name(),
+        other_name: None,
         kind,
         levels,
-        relation,
+        relations,
     }
 }
 
 const fn object(
     class: Class,
     levels: &'static [&'static [Attribute]],
-    relation: Option<Relation>,
+    relations: &'static [Relation],
 ) -> Entity {
-    entity(EntityKind::Object(class), levels, relation)
+    entity(EntityKind::Object(class), levels, relations)
+}
+
+const fn light(
+    class: LightClass,
+    levels: &'static [&'static [Attribute]],
+    relations: &'static [Relation],
+) -> Entity {
+    entity(EntityKind::Light(class), levels, relations)
 }
 
 /// All entity types.
-pub(super) static ENTITIES: [Entity; 12] = [
-    entity(EntityKind::Camera, &[CAMERA], None),
-    entity(EntityKind::Material, &[MATERIAL], None),
-    object(Class::Plane, &[OBJECT, PLANE], None),
-    object(Class::Sphere, &[OBJECT, SPHERE], None),
+pub(super) static ENTITIES: [Entity; 17] = [
+    entity(EntityKind::Camera, &[CAMERA], &[]),
+    entity(EntityKind::Material, &[MATERIAL], &[]),
+    object(Class::Plane, &[OBJECT, PLANE], &[]),
+    object(Class::Sphere, &[OBJECT, SPHERE], &[]),
     object(Class::Tiled, &[OBJECT, PLANE, TILED], ALONG_NORMAL),
     object(
         Class::ProceduralPlane,
         &[OBJECT, PLANE, PROCEDURAL_PLANE],
-        None,
+        &[],
     ),
     object(
         Class::ProceduralSphere,
         &[OBJECT, SPHERE, PROCEDURAL_SPHERE],
-        None,
+        &[],
     ),
     object(Class::Finite, &[OBJECT, PLANE, FINITE], ALONG_NORMAL),
-    entity(EntityKind::Light { spot: false }, &[LIGHT], None),
-    entity(EntityKind::Light { spot: true }, &[LIGHT, SPOT], AIMLESS),
-    entity(EntityKind::Texture, &[TEXTURE], None),
+    light(LightClass::Light, &[LIGHT], &[]),
+    light(LightClass::Spotlight, &[LIGHT, SPOT], AIMLESS),
+    light(
+        LightClass::Projector,
+        &[LIGHT, PLANE, FINITE, TEXTURED],
+        ALONG_NORMAL,
+    ),
+    entity(EntityKind::Texture, &[TEXTURE], &[]),
     object(
         Class::Textured,
         &[OBJECT, PLANE, FINITE, TEXTURED],
         ALONG_NORMAL,
     ),
+    Entity {
+        other_name: Some("tri"),
+        ..object(Class::Triangle, &[OBJECT, TRIANGLE], FLAT)
+    },
+    object(
+        Class::ProceduralTriangle,
+        &[OBJECT, TRIANGLE, PROCEDURAL_PLANE],
+        FLAT,
+    ),
+    object(Class::Quadric, &[OBJECT, QUADRIC], EMPTY_BOX),
+    object(
+        Class::ProceduralQuadric,
+        &[OBJECT, QUADRIC, PROCEDURAL_PLANE],
+        EMPTY_BOX,
+    ),
 ];
 
 /// Entity types of the language's later life that are known and not supported.
-pub(super) const UNSUPPORTED: [&str; 4] = ["quadric", "triangle", "projector", "revsurf"];
+pub(super) const UNSUPPORTED: &[&str] = &["revsurf", "quadric", "pquadric", "projector"];
 
 /// The most rows that an entity has: see the test.
 pub(super) const MAX_ROWS: usize = 8;
 
 /// The entity type of this name.
 pub(super) fn find(name: &[u8]) -> Option<&'static Entity> {
-    ENTITIES
+    let mut known = ENTITIES
         .iter()
-        .find(|entity| entity.name.as_bytes() == name)
+        .filter(|entity| !UNSUPPORTED.contains(&entity.name));
+    known.find(|entity| {
+        let mut names = entity.other_name.into_iter().chain([entity.name]);
+        names.any(|own| own.as_bytes() == name)
+    })
 }
 
 /// The entity type that makes this.
@@ -375,9 +512,40 @@ impl Entity {
         self.levels.iter().copied().flatten()
     }
 
-    /// The row of this name, by either spelling, and its number.
+    /// The row of this name, by any spelling, and its number.
     pub(super) fn row(&self, name: &[u8]) -> Option<(usize, &'static Attribute)> {
         self.rows().enumerate().find(|(_, row)| row.is_called(name))
+    }
+
+    /// The rows of this name, each with its number and the way in which it is spelt: 0 is its own name. They are more
+    /// than one where a spelling of one attribute is another's too.
+    pub(super) fn spelt(
+        &self,
+        name: &[u8],
+    ) -> impl Iterator<Item = (usize, &'static Attribute, usize)> {
+        let rows = self.rows().enumerate();
+        rows.filter_map(move |(index, row)| Some((index, row, row.way(name)?)))
+    }
+
+    /// The row of this name, its number and the way in which it is spelt: this way, if there is such a row.
+    pub(super) fn spelt_in(
+        &self,
+        way: Option<usize>,
+        name: &[u8],
+    ) -> Option<(usize, &'static Attribute, usize)> {
+        let in_way = self.spelt(name).find(|found| Some(found.2) == way);
+        in_way.or_else(|| self.spelt(name).next())
+    }
+
+    /// The way in which these attributes are spelt, by the first one whose spelling tells it.
+    pub(super) fn way_of<'n>(&self, mut names: impl Iterator<Item = &'n [u8]>) -> Option<usize> {
+        names.find_map(|name| {
+            let mut rows = self
+                .spelt(name)
+                .filter(|(_, row, _)| !row.other_names.is_empty());
+            let (_, _, way) = rows.next()?;
+            rows.next().is_none().then_some(way)
+        })
     }
 }
 
@@ -388,10 +556,19 @@ impl Attribute {
     }
 
     fn is_called(&self, name: &[u8]) -> bool {
-        self.name.as_bytes() == name
-            || self
-                .other_name
-                .is_some_and(|other| other.as_bytes() == name)
+        self.way(name).is_some()
+    }
+
+    /// Its name, spelt in this way.
+    pub(super) fn spelling(&self, way: usize) -> Option<&'static str> {
+        let mut names = std::iter::once(&self.name).chain(self.other_names);
+        names.nth(way).copied()
+    }
+
+    /// The number of this spelling, if it is one: 0 is its own name.
+    fn way(&self, name: &[u8]) -> Option<usize> {
+        let mut names = std::iter::once(&self.name).chain(self.other_names);
+        names.position(|own| own.as_bytes() == name)
     }
 }
 

@@ -317,6 +317,33 @@ fn the_builder_tells_everything_that_is_wrong() {
 }
 
 #[test]
+fn a_triangle_that_was_built_is_the_one_of_the_text() {
+    let mut built = SceneBuilder::new();
+    built.camera("cam", [64, 48], [8.0, 6.0], [4.0, 3.0, 6.0]);
+    let material = built.material(Material {
+        name: "m".into(),
+        ambient: DVec3::ONE,
+        ..Material::default()
+    });
+    let vertices = [[0.0; 3], [8.0, 0.0, -1.0], [4.0, 6.0, -2.0]].map(DVec3::from);
+    built.triangle("t", material, vertices, Some(DVec3::Z));
+    let text =
+        "camera cam { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
+        triangle t { material m vertex1 0 0 0 vertex2 8 0 -1 vertex3 4 6 -2 normal 0 0 1 }";
+    let read = parse("t", text.as_bytes(), Path::new("")).unwrap();
+    assert_eq!(built.build().unwrap(), read);
+    let mut flat = SceneBuilder::new();
+    flat.camera("cam", [64, 48], [8.0, 6.0], [4.0, 3.0, 6.0]);
+    let material = flat.material(Material {
+        name: "m".into(),
+        ..Material::default()
+    });
+    flat.triangle("t", material, [DVec3::ZERO, DVec3::X, DVec3::X * 3.0], None);
+    let error = flat.build().unwrap_err().to_string();
+    assert!(error.contains("must not lie in a line"), "{error}");
+}
+
+#[test]
 fn ids_of_another_builder_are_told() {
     let mut one = SceneBuilder::new();
     let id = one.material(Material {
@@ -342,8 +369,12 @@ fn what_can_be_changed_alone_is_in_no_relation() {
     changeable.extend([Measure::Center, Measure::Radius].map(|which| Target::Sphere(0, which)));
     let related: Vec<&str> = table::ENTITIES
         .iter()
-        .filter_map(|entity| entity.relation.as_ref())
-        .flat_map(|relation| [relation.attribute, relation.other])
+        .flat_map(|entity| entity.relations)
+        .flat_map(|relation| {
+            [relation.attribute]
+                .into_iter()
+                .chain(relation.others.iter().copied())
+        })
         .collect();
     assert!(related.contains(&"xdir") && related.contains(&"location"));
     for target in changeable {

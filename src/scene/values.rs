@@ -4,19 +4,21 @@
 
 use super::common_mistakes;
 use super::draft::TexturePicture;
-use super::lex::Token;
+use super::lex::{Lexer, Token};
 use super::names::nearest;
 use super::number::looks_numeric;
 use super::parse::{Block, Parser};
 use super::table::{Attribute, ENTITIES, Entity, Take};
 use crate::diagnostic::Diagnostic;
 
+/// More than a right block has of an entity whose attributes are spelt in several ways.
+const MOST_TOKENS: usize = 64;
+
 impl<'t> Parser<'t> {
     /// Reads an attribute and its values.
     pub(super) fn attribute(&mut self, block: &mut Block) {
-        let entity = block.entity;
         let key = self.bump();
-        let (index, row) = match entity.row(key.text) {
+        let (index, row) = match self.known_attribute(block, key) {
             Some(found) => {
                 if let Some(first) = &block.given[found.0] {
                     let error =
@@ -30,6 +32,7 @@ impl<'t> Parser<'t> {
                     let mut again = Block {
                         draft: block.draft.clone(),
                         given: block.given.clone(),
+                        way: block.way.clone(),
                         ..*block
                     };
                     self.values(&mut again, found.0, found.1, key);
@@ -47,6 +50,62 @@ impl<'t> Parser<'t> {
         if !given {
             block.given[index] = Some(key.start..self.last_end);
         }
+    }
+
+    /// The row of an attribute, if the entity has it. Complains where it is spelt in another way than those before it.
+    fn known_attribute(
+        &mut self,
+        block: &mut Block,
+        key: Token<'t>,
+    ) -> Option<(usize, &'static Attribute)> {
+        let entity = block.entity;
+        let mut way = block.way.as_ref().map(|(way, _)| *way);
+        if way.is_none() && entity.spelt(key.text).nth(1).is_some() {
+            way = entity.way_of(self.keys_ahead().into_iter());
+        }
+        let (index, row, own) = entity.spelt_in(way, key.text)?;
+        // What is given twice is told as that.
+        if row.other_names.is_empty() || block.given[index].is_some() {
+            return Some((index, row));
+        }
+        match &block.way {
+            Some((way, first)) if *way != own => {
+                let other = String::from_utf8_lossy(&self.text[first.clone()]).into_owned();
+                let message = format!(
+                    "{} beside `{other}`: an entity is spelt in one way",
+                    key.quoted()
+                );
+                let help = row.spelling(*way).map(|name| format!("write `{name}`"));
+                let error = Diagnostic::new(key.span(), message);
+                let error = error.also(first.clone(), "spelt in another way here");
+                self.errors.report(match help {
+                    Some(help) => error.help(help),
+                    None => error,
+                });
+            }
+            Some(_) => {}
+            None => block.way = Some((own, key.span())),
+        }
+        Some((index, row))
+    }
+
+    /// The attributes in the rest of this block, as far as their spelling can matter.
+    fn keys_ahead(&self) -> Vec<&'t [u8]> {
+        let mut lexer = Lexer::at(self.text, self.window[0].start);
+        let mut keys = Vec::new();
+        let mut token = lexer.token();
+        for _ in 0..MOST_TOKENS {
+            if !token.is_word() {
+                break;
+            }
+            let next = lexer.token();
+            // A name may be any word, and an attribute's own name follows it.
+            if next.is_word() && looks_numeric(next.text) && !looks_numeric(token.text) {
+                keys.push(token.text);
+            }
+            token = next;
+        }
+        keys
     }
 
     /// Complains about an attribute that the entity does not have; returns what it was meant to be, if that is plain.

@@ -166,8 +166,8 @@ bindings! {
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
     binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
-    binding 4, "rectangles", READ, "array<Rectangle>", "finite planes",
-        |f| f.contains(&Feature::RectangleLoop), Some(|p| records(&p.rectangles));
+    binding 4, "polygons", READ, "array<Polygon>", "finite planes",
+        |f| f.contains(&Feature::PolygonLoop) || f.contains(&Feature::GridTriangles), Some(|p| records(&p.polygons));
     binding 5, "spheres", READ, "array<Sphere>", "spheres",
         |f| f.contains(&Feature::SphereBuffer) && !f.contains(&Feature::SpherePoint), Some(|p| records(&p.spheres));
     binding 5, "spheres", READ, "array<SphereAndHit>", "spheres",
@@ -189,12 +189,15 @@ bindings! {
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.materials));
     binding 13, "lights", READ, "array<Light>", "lights",
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.lights));
-    /// The planes and rectangles for rays from anywhere; each object of the scene knows its place here or among the
-    /// spheres.
+    /// The planes, rectangles and triangles for rays from anywhere; each object of the scene knows its place here or
+    /// among the spheres.
     binding 14, "world_planes", READ, "array<WorldPlane>", "planes for all rays",
         |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
     binding 15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",
         |f| f.contains(&Feature::WorldSpheres), Some(|p| of_lit(p, |lit| &lit.spheres));
+    /// The third sides of the triangles among the planes.
+    binding 17, "third_sides", READ, "array<ThirdSide>", "third sides of triangles",
+        |f| f.contains(&Feature::TriangleAnywhere), Some(|p| of_lit(p, |lit| &lit.third_sides));
     /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
     binding OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;
 }

@@ -55,7 +55,7 @@ const FILES: [File; 14] = [
         && !f.contains(&Feature::Course)),
     file!("plane.wgsl", |f| [
         Feature::Plane,
-        Feature::Rectangle,
+        Feature::Polygon,
         Feature::Lit
     ]
     .iter()
@@ -149,7 +149,7 @@ fn layout(name: &str) -> Option<&'static Layout> {
     records::LAYOUTS.iter().find(|layout| layout.name == name)
 }
 
-/// The objects of a small scene as literals, for primary rays: no load, no loop. Rectangles come first: of objects that
+/// The objects of a small scene as literals, for primary rays: no load, no loop. Polygons come first: of objects that
 /// share a surface a plane without end is the last that counts.
 fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
     let mut text = String::new();
@@ -163,8 +163,8 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
         )
         .unwrap_or_default();
     };
-    for (i, r) in packed.rectangles.iter().enumerate() {
-        line("rectangle_hits", r.literal(), r.object, i, r.group);
+    for (i, r) in packed.polygons.iter().enumerate() {
+        line("polygon_hits", r.literal(), r.object, i, r.group);
     }
     for (i, p) in packed.planes.iter().enumerate() {
         line("plane_hits", p.literal(), p.object, i, p.group);

@@ -64,12 +64,19 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
     let has = |feature: Feature| features.contains(&feature);
     let mut counts = vec![
         (Feature::PlaneLoop, "PLANES", packed.planes.len()),
-        (
-            Feature::RectangleLoop,
-            "RECTANGLES",
-            packed.rectangles.len(),
-        ),
+        (Feature::PolygonLoop, "POLYGONS", packed.loose_polygons()),
         (Feature::SphereLoop, "SPHERES", packed.spheres.len()),
+        (Feature::GridTriangles, "GRID_SPHERES", packed.spheres.len()),
+        (
+            Feature::GridTriangles,
+            "LOOSE_POLYGONS",
+            packed.loose_polygons(),
+        ),
+        (
+            Feature::TriangleTree,
+            "TRIANGLE_ROOT",
+            packed.triangle_root.unwrap_or(0),
+        ),
         (Feature::Tables, "TABLES", packed.objects.len()),
         (Feature::Tables, "COLUMNS", packed.tables.columns as usize),
         (Feature::Bvh, "BVH_DEPTH", packed.bvh_depth),
@@ -123,7 +130,7 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
                 "SHADOW_STEPS",
                 if in_shadows { steps } else { 0 },
             ),
-            (Feature::WorldPlaneLoop, "WORLD_PLANES", lit.planes.len()),
+            (Feature::WorldPlaneLoop, "WORLD_PLANES", lit.loose_planes),
             (Feature::WorldSphereLoop, "WORLD_TREE", lit.in_tree),
             (Feature::WorldSphereLoop, "WORLD_SPHERES", lit.spheres.len()),
             (Feature::Stack, "STACK", STACK),

@@ -31,18 +31,22 @@ features! {
     AmbientOnly = "ambient_only",
     /// Primary rays can hit planes without end.
     Plane = "plane",
-    /// Primary rays can hit rectangles.
-    Rectangle = "rectangle",
+    /// Primary rays can hit rectangles or triangles.
+    Polygon = "polygon",
     /// The z ≤ τ rule decides pixels.
     Front = "front",
     /// Planes stand in a buffer.
     PlaneLoop = "plane_loop",
-    /// Rectangles stand in a buffer.
-    RectangleLoop = "rectangle_loop",
+    /// Some of them stand in a buffer and are asked one after the other.
+    PolygonLoop = "polygon_loop",
     /// Primary rays can hit spheres.
     Sphere = "sphere",
-    /// Spheres are many, in cells of the screen.
+    /// Spheres or triangles are many, in cells of the screen.
     ScreenGrid = "screen_grid",
+    /// There are spheres among them.
+    GridSpheres = "grid_spheres",
+    /// There are triangles among them.
+    GridTriangles = "grid_triangles",
     /// Spheres stand in a buffer and are asked one by one.
     SphereLoop = "sphere_loop",
     /// Spheres stand in a buffer.
@@ -51,8 +55,12 @@ features! {
     SpherePoint = "sphere_point",
     /// Spheres are hit by rays from elsewhere, or looked at as if by such.
     SphereBeyond = "sphere_beyond",
-    /// Spheres of a lit scene have a tree.
+    /// Spheres or triangles of a lit scene have a tree.
     Bvh = "bvh",
+    /// There is one over spheres.
+    SphereTree = "sphere_tree",
+    /// There is one over triangles.
+    TriangleTree = "triangle_tree",
     /// The error of a hit goes on into positions.
     FirstOrder = "first_order",
     /// Pixels come with a verdict.
@@ -123,8 +131,10 @@ features! {
     LightsOnSurface = "lights_on_surface",
     /// Some light is so near to a plane that its height above it is told.
     LowLight = "low_light",
-    /// Rays from anywhere can hit rectangles.
-    RectangleAnywhere = "rectangle_anywhere",
+    /// Rays from anywhere can hit rectangles or triangles.
+    SidesAnywhere = "sides_anywhere",
+    /// Rays from anywhere can hit triangles.
+    TriangleAnywhere = "triangle_anywhere",
     /// Rays from anywhere go through a loop.
     WorldLoop = "world_loop",
     /// Rays from anywhere go through planes in a loop.

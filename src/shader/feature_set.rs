@@ -14,8 +14,8 @@ use crate::settings::{SamplePattern, Settings};
 pub struct FeatureSet {
     /// There are planes without end.
     pub planes: bool,
-    /// There are rectangles that primary rays can hit.
-    pub rectangles: bool,
+    /// There are rectangles or triangles that primary rays can hit.
+    pub polygons: bool,
     /// Some plane crosses the screen, so that the z > τ rule decides pixels.
     pub front: bool,
     /// There are spheres that primary rays can hit.
@@ -29,7 +29,13 @@ pub struct FeatureSet {
     /// Pixels come with a verdict.
     pub certified: bool,
     /// Spheres of a lit scene are many and have a tree.
-    pub bvh: bool,
+    pub sphere_tree: bool,
+    /// Triangles of a lit scene are many and have a tree.
+    pub triangle_tree: bool,
+    /// There are triangles in the cells of the screen.
+    pub grid_triangles: bool,
+    /// There are rectangles or triangles that are in no cell.
+    pub loose_polygons: bool,
     /// Objects stand in the text of the shader, not in buffers.
     pub unrolled: bool,
     /// An invocation makes four pixels side by side: of scenes so simple that storing is what costs.
@@ -65,10 +71,14 @@ pub struct LitFeatures {
     pub lights_on_surface: bool,
     /// Some light is next to a plane.
     pub low_light: bool,
-    /// There are planes, of either kind.
+    /// There are planes, of any kind.
     pub planes: bool,
-    /// There are rectangles.
-    pub rectangles: bool,
+    /// Some of them are outside the tree.
+    pub loose_planes: bool,
+    /// There are rectangles or triangles.
+    pub sides: bool,
+    /// There are triangles.
+    pub triangles: bool,
     /// There are spheres.
     pub spheres: bool,
     /// Some of them are outside the tree.
@@ -112,20 +122,23 @@ impl FeatureSet {
             .planes
             .iter()
             .map(|p| p.front)
-            .chain(packed.rectangles.iter().map(|r| r.front));
+            .chain(packed.polygons.iter().map(|r| r.front));
         let certified = settings.has_gpu_bounds();
         let several = settings.supersampling();
         Self {
             planes: !packed.planes.is_empty(),
-            rectangles: !packed.rectangles.is_empty(),
+            polygons: !packed.polygons.is_empty(),
             front: fronts.into_iter().any(|front| front != [0.0, 0.0, 1.0]),
             spheres: !packed.spheres.is_empty(),
             screen_grid: packed.screen_grid.is_some(),
             groups: packed.planes.iter().any(|p| p.group != 0)
-                || packed.rectangles.iter().any(|r| r.group != 0),
+                || packed.polygons.iter().any(|r| r.group != 0),
             tables: !packed.tables.words.is_empty(),
             certified,
-            bvh: !packed.bvh.is_empty(),
+            sphere_tree: packed.lit.as_ref().is_some_and(|lit| lit.in_tree > 0),
+            triangle_tree: packed.triangle_root.is_some(),
+            grid_triangles: packed.grid_polygons > 0,
+            loose_polygons: packed.loose_polygons() > 0,
             unrolled: packed.screen_grid.is_none() && (1..=UNROLLED_OBJECTS).contains(&objects),
             quad: packed.screen_grid.is_none()
                 && packed.lit.is_none()
@@ -150,7 +163,9 @@ impl FeatureSet {
                         .any(|sphere| sphere.lights_on_surface != 0),
                 low_light: lit.planes.iter().any(|plane| plane.height != 0.0),
                 planes: !lit.planes.is_empty(),
-                rectangles: lit.planes.iter().any(|plane| plane.bounded != 0),
+                loose_planes: lit.loose_planes > 0,
+                sides: lit.planes.iter().any(|plane| plane.bounded != 0),
+                triangles: !lit.third_sides.is_empty(),
                 spheres: !lit.spheres.is_empty(),
                 loose_spheres: lit.in_tree < lit.spheres.len(),
                 max_path: (settings.limits.max_path * two_to(-packed.scale)) as f32,
@@ -172,7 +187,7 @@ impl FeatureSet {
 
     /// Whether a ray can hit anything at all.
     pub fn any_object(&self) -> bool {
-        self.planes || self.rectangles || self.spheres
+        self.planes || self.polygons || self.spheres
     }
 
     /// Words of a record that the shader leaves of a pixel of which only some samples are sure; 0 where it leaves none.
@@ -214,7 +229,8 @@ struct Conditions<'a> {
     /// What lights need; nothing without lights.
     light: LitFeatures,
     certified: bool,
-    bvh: bool,
+    sphere_tree: bool,
+    triangle_tree: bool,
     /// Objects stand in buffers.
     loops: bool,
     tiled: bool,
@@ -234,7 +250,8 @@ impl<'a> Conditions<'a> {
             lit,
             light: set.lit.filter(|_| any).unwrap_or_default(),
             certified: any && set.certified,
-            bvh: lit && set.bvh,
+            sphere_tree: lit && set.sphere_tree,
+            triangle_tree: lit && set.triangle_tree,
             loops: !set.unrolled,
             tiled: any && set.kinds.contains(&SurfaceKind::Tiled),
             textured: any && set.kinds.contains(&SurfaceKind::Textured),
@@ -258,7 +275,8 @@ impl<'a> Conditions<'a> {
             lit,
             light,
             certified,
-            bvh,
+            sphere_tree,
+            triangle_tree,
             loops,
             tiled,
             textured,
@@ -269,18 +287,24 @@ impl<'a> Conditions<'a> {
             Feature::AnyObject => any,
             Feature::AmbientOnly => any && !lit,
             Feature::Plane => set.planes,
-            Feature::Rectangle => set.rectangles,
+            Feature::Polygon => set.polygons,
             Feature::Front => set.front,
             Feature::PlaneLoop => set.planes && loops,
-            Feature::RectangleLoop => set.rectangles && loops,
+            Feature::PolygonLoop => set.loose_polygons && loops,
             Feature::Sphere => set.spheres,
-            Feature::ScreenGrid => set.spheres && set.screen_grid,
+            Feature::ScreenGrid => (set.spheres || set.grid_triangles) && set.screen_grid,
+            Feature::GridSpheres => set.spheres && set.screen_grid,
+            Feature::GridTriangles => set.grid_triangles,
             Feature::SphereLoop => set.spheres && loops && !set.screen_grid,
             Feature::SphereBuffer => set.spheres && (loops || self.feature(Feature::SpherePoint)),
             // In a lit scene with a tree, hits on spheres are looked at as those of rays from anywhere are.
-            Feature::SpherePoint => set.spheres && if lit { !bvh } else { psphere },
-            Feature::SphereBeyond => light.spheres && (light.mirror || light.transparent || bvh),
-            Feature::Bvh => bvh,
+            Feature::SpherePoint => set.spheres && if lit { !sphere_tree } else { psphere },
+            Feature::SphereBeyond => {
+                light.spheres && (light.mirror || light.transparent || sphere_tree)
+            }
+            Feature::Bvh => sphere_tree || triangle_tree,
+            Feature::SphereTree => sphere_tree,
+            Feature::TriangleTree => triangle_tree,
             Feature::FirstOrder => certified && !lit && (tiled || textured || pplane || psphere),
             Feature::Certified => certified,
             Feature::Moving => any && set.moving,
@@ -292,7 +316,7 @@ impl<'a> Conditions<'a> {
             Feature::Index => certified && (tiled || textured || pplane),
             Feature::Doubtful => certified && (lit || tiled || textured || pplane || psphere),
             Feature::Mixed => {
-                let shapes = [set.planes, set.rectangles, set.spheres];
+                let shapes = [set.planes, set.polygons, set.spheres];
                 set.screen_grid || shapes.iter().filter(|shape| **shape).count() > 1
             }
             Feature::Modulated => set.kinds.iter().any(|kind| kind.modulates_ambient(lit)),
@@ -312,7 +336,7 @@ impl<'a> Conditions<'a> {
             Feature::LitSphere => light.spheres,
             Feature::WorldPlanes => light.planes,
             Feature::WorldSpheres => {
-                light.spheres && (loops || light.mirror || light.transparent || bvh)
+                light.spheres && (loops || light.mirror || light.transparent || sphere_tree)
             }
             Feature::Mirror => light.mirror,
             Feature::Transparent => light.transparent,
@@ -323,9 +347,10 @@ impl<'a> Conditions<'a> {
             Feature::Cone => light.cone,
             Feature::LightsOnSurface => light.lights_on_surface,
             Feature::LowLight => light.low_light,
-            Feature::RectangleAnywhere => light.rectangles,
-            Feature::WorldLoop => lit && loops && (light.planes || light.loose_spheres),
-            Feature::WorldPlaneLoop => lit && loops && light.planes,
+            Feature::SidesAnywhere => light.sides,
+            Feature::TriangleAnywhere => light.triangles,
+            Feature::WorldLoop => lit && loops && (light.loose_planes || light.loose_spheres),
+            Feature::WorldPlaneLoop => lit && loops && light.loose_planes,
             Feature::WorldSphereLoop => lit && loops && light.loose_spheres,
             // A helper comes in where a chosen shader names it, or another helper does.
             Feature::ColorWheel => self.asks("color_wheel("),

@@ -30,9 +30,10 @@ records! {
         pad: Pad2,
     }
 
-    /// A rectangle as primary rays see it. A hit is inside where the forms of all four sides are ≥ 0: p_i/s and
-    /// (d_i − p_i)/s, where p are the coordinates on the rectangle and d its sides, each up to a positive factor.
-    Rectangle as "Rectangle" {
+    /// A rectangle or a triangle as primary rays see it. A hit is inside where the forms of all four sides are ≥ 0,
+    /// each up to a positive factor: of a rectangle p_i/s and (d_i − p_i)/s, where p are the coordinates on it and d
+    /// its sides. The fourth of a triangle is 1.
+    Polygon as "Polygon" {
         /// 1/s over (X, Y, 1).
         inverse: [f32; 3],
         /// Index of the object.
@@ -51,8 +52,9 @@ records! {
         front_error: f32,
         /// The side opposite the first.
         side_2: [f32; 3],
-        /// Nothing.
-        pad_0: Pad1,
+        /// 1/s is no larger; where triangles are many.
+        #[any_size = "it is only compared"]
+        max_inverse: f32,
         /// The side opposite the second.
         side_3: [f32; 3],
         /// Nothing.
@@ -280,7 +282,7 @@ records! {
         pad: Pad1,
     }
 
-    /// A plane or rectangle for rays from anywhere; positions are from the viewpoint.
+    /// A plane, rectangle or triangle for rays from anywhere; positions are from the viewpoint.
     WorldPlane as "WorldPlane" {
         /// Unit normal.
         normal: [f32; 3],
@@ -294,19 +296,19 @@ records! {
         fixed_coordinate: [f32; 3],
         /// Index of the object.
         object: u32,
-        /// Direction of the first side.
+        /// Direction of the first side; of a triangle, from its first side to the inside.
         row_0: [f32; 3],
         /// What is subtracted.
         origin_0: f32,
-        /// Direction of the second side.
+        /// Direction of the second side; of a triangle, from its second side to the inside.
         row_1: [f32; 3],
         /// What is subtracted.
         origin_1: f32,
-        /// Lengths of the sides.
+        /// Lengths of the sides; of a triangle, more than any.
         lengths: [f32; 2],
         /// Bit i: light i lies in the plane.
         lights_on_surface: u32,
-        /// 1 for a rectangle.
+        /// 1 for a rectangle; for a triangle 2 and the number of its third side.
         bounded: u32,
         /// A hit counts only up to this z.
         #[any_size = "the largest f32 stands for no limit, and it is only compared"]
@@ -317,6 +319,14 @@ records! {
         low_light: u32,
         /// That light's height above the plane, to the normal's side.
         height: f32,
+    }
+
+    /// The third side of a triangle for rays from anywhere: within, row·P − origin is ≥ 0.
+    ThirdSide as "ThirdSide" {
+        /// From the side to the inside.
+        row: [f32; 3],
+        /// What is subtracted.
+        origin: f32,
     }
 
     /// A sphere for rays from anywhere; its center is from the viewpoint.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use plumb::render::{Backend, Report, Settings, render};
-use plumb::scene::{Light, Scene, load};
+use plumb::scene::{Beam, Light, Scene, load};
 
 /// The folder `scenes/`.
 pub(crate) fn scenes() -> PathBuf {
@@ -55,7 +55,7 @@ pub(crate) fn light(location: DVec3) -> Light {
         name: "l".into(),
         location,
         emissivity: DVec3::ONE,
-        cone: None,
+        beam: Beam::Everywhere,
     }
 }
 

@@ -39,7 +39,7 @@ fn off(scale: f64) -> (usize, usize, usize) {
             &scene,
             ViewParameters::from(0.0),
             &bounds,
-            &bounds.sources(&scene),
+            &bounds.sources(&scene, ViewParameters::from(0.0)),
         );
         let end = Lazy::mark();
         let [width, height] = scene.camera.pixeldim;
@@ -233,7 +233,7 @@ fn of_many_spheres_only_those_near_the_ray_are_made_exact() {
     }
     let scene = scene(&text);
     let bounds = Prepared::<Bounded>::new(&scene, 0.0);
-    let sources = bounds.sources(&scene);
+    let sources = bounds.sources(&scene, ViewParameters::from(0.0));
     Lazy::clear();
     let exact = Prepared::<Lazy>::again(&scene, ViewParameters::from(0.0), &bounds, &sources);
     assert!(exact.spheres.is_empty() && exact.sphere_count() == bounds.spheres.len());

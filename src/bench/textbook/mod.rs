@@ -15,7 +15,7 @@ use super::truth::{FirstObject, PixelHit};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::image::Picture;
-use crate::scene::{Scene, Shape};
+use crate::scene::{Beam, Light, Object, Scene, Shape};
 use crate::settings::Settings;
 use crate::shader::literal::{literal, vector};
 use crate::shader::preprocess::{Directives, preprocess};
@@ -32,6 +32,9 @@ pub enum TextbookError {
     /// Every ray asks every object.
     #[error("the textbook's ways stop at {MOST_SPHERES} spheres, and the scene has {0}")]
     TooManySpheres(usize),
+    /// It is older than the language's later entities.
+    #[error("the textbook's ways have no {0}")]
+    NotInTheTextbook(&'static str),
     /// The loops of some pixels came near what the driver allows.
     #[error("{0} pixels need more rounds of loops than a driver is sure to go")]
     GaveUp(u64),
@@ -58,6 +61,21 @@ pub struct Rendered {
     pub kernel: f64,
 }
 
+/// The type of an object or light that textbooks of that time leave out, if the scene has one.
+fn later_entity(scene: &Scene) -> Option<&'static str> {
+    let object = scene.objects.iter().find(|object| match object.shape {
+        Shape::Triangle(_) | Shape::Quadric(_) => true,
+        Shape::Plane { .. } | Shape::Sphere { .. } => false,
+    });
+    let light = scene.lights.iter().find(|light| match light.beam {
+        Beam::Picture(_) => true,
+        Beam::Everywhere | Beam::Cone(_) => false,
+    });
+    object
+        .map(Object::entity)
+        .or_else(|| light.map(Light::entity))
+}
+
 impl<'a> Textbook<'a> {
     /// Composes, compiles, uploads. `prepared`: by the host in f64. `report`: for [`Textbook::hits`] instead of
     /// [`Textbook::render`].
@@ -78,6 +96,9 @@ impl<'a> Textbook<'a> {
             .count();
         if spheres > MOST_SPHERES {
             return Err(TextbookError::TooManySpheres(spheres));
+        }
+        if let Some(entity) = later_entity(scene) {
+            return Err(TextbookError::NotInTheTextbook(entity));
         }
         let records = Records::new(scene, prepared);
         let buffers = [

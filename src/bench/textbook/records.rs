@@ -174,6 +174,7 @@ impl Pack<'_> {
                 record.point = f32s(center - self.view);
                 record.radius = radius as f32;
             }
+            Shape::Triangle(_) | Shape::Quadric(_) => {}
             Shape::Plane {
                 normal,
                 point,
@@ -277,7 +278,7 @@ impl Pack<'_> {
             name: _,
             location,
             emissivity,
-            cone,
+            beam,
         } = self.scene.lights[index];
         let mut record = Light {
             location: f32s(location - self.view),
@@ -285,7 +286,7 @@ impl Pack<'_> {
             theta: if self.prepared { -2.0 } else { 0.0 },
             ..Light::zeroed()
         };
-        if let Some(scene::Cone { point, theta }) = cone {
+        if let scene::Beam::Cone(scene::Cone { point, theta }) = beam {
             if self.prepared {
                 record.theta = theta.to_radians().cos() as f32;
                 record.point = f32s((point - location).normalize());

@@ -100,6 +100,14 @@ fn too_many_spheres_are_refused() {
     assert!(frame(&scene).is_ok());
 }
 
+#[test]
+fn what_no_textbook_has_is_refused() {
+    let gpu = gpu();
+    let scene = of_ours("known/triangle_edges.txt", [3, 3]);
+    let refused = frame(&gpu, &scene, &Settings::default(), true).unwrap_err();
+    assert_eq!(refused.to_string(), "the textbook's ways have no triangle");
+}
+
 /// What the shader says of a pixel's hit is what the picture shows.
 #[test]
 fn hits_are_told_with_their_distances() {

@@ -16,7 +16,7 @@ use crate::settings::Settings;
 use crate::shader::bounds::{self, U};
 use crate::shader::kind::SurfaceKind;
 use crate::shader::pack::Packed;
-use crate::shader::records::{Plane, Rectangle, Sphere};
+use crate::shader::records::{Plane, Polygon, Sphere};
 
 /// Pixels at once.
 pub const LANES: usize = 8;
@@ -177,8 +177,8 @@ impl Lanes {
         };
         let at = from(packed.camera.numbers.anchor);
         let mut closest = Closest::new();
-        for rectangle in &packed.rectangles {
-            rectangle_hits(rectangle, &at, &mut closest);
+        for polygon in &packed.polygons[..packed.loose_polygons()] {
+            polygon_hits(polygon, &at, polygon.group, &mut closest);
         }
         for plane in &packed.planes {
             plane_hits(plane, &at, &mut closest);
@@ -191,13 +191,21 @@ impl Lanes {
             }
             Some(screen_grid) => {
                 for &place in screen_grid.at([f64::from(x), f64::from(y)]) {
-                    let sphere = &packed.spheres[place as usize];
-                    let behind =
-                        |i: usize| sphere.max_inverse < closest.inverse[i] - closest.error[i];
+                    let place = place as usize;
+                    let max_inverse = screen_grid.max_inverse[place];
+                    let behind = |i: usize| max_inverse < closest.inverse[i] - closest.error[i];
                     if (0..LANES).all(behind) {
                         break;
                     }
-                    self.sphere_hits(sphere, &from(sphere.anchor), &mut closest);
+                    match packed.spheres.get(place) {
+                        Some(sphere) => {
+                            self.sphere_hits(sphere, &from(sphere.anchor), &mut closest)
+                        }
+                        None => {
+                            let polygon = packed.grid_polygon(place);
+                            polygon_hits(polygon, &at, 0, &mut closest);
+                        }
+                    }
                 }
             }
         }
@@ -272,10 +280,10 @@ fn plane_hits(plane: &Plane, at: &(Lane, f32), closest: &mut Closest) {
 /// A form that is 1 everywhere.
 const ALWAYS: [f32; 3] = [0.0, 0.0, 1.0];
 
-fn rectangle_hits(rectangle: &Rectangle, at: &(Lane, f32), closest: &mut Closest) {
-    let inverse = linear(&rectangle.inverse, at);
+fn polygon_hits(polygon: &Polygon, at: &(Lane, f32), group: u32, closest: &mut Closest) {
+    let inverse = linear(&polygon.inverse, at);
     let (mut hit, mut possible) = ([true; LANES], [true; LANES]);
-    let r = rectangle;
+    let r = polygon;
     let sides = [&r.side_0, &r.side_1, &r.side_2, &r.side_3];
     for (side, error) in sides
         .into_iter()
@@ -295,7 +303,7 @@ fn rectangle_hits(rectangle: &Rectangle, at: &(Lane, f32), closest: &mut Closest
         hit,
         possible,
         r.object,
-        r.group,
+        group,
     );
 }
 

@@ -65,7 +65,7 @@ fn both(scene: &Scene, prepared: &Prepared<f64>, margin: f64) -> [Vec<Option<usi
             let viewpoint = scene.camera.viewpoint;
             Sphere::new(viewpoint, &prepared.camera, index, center, radius)
         }
-        Shape::Plane { .. } => None,
+        Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => None,
     };
     let all = Prepared {
         screen_grid: None,

@@ -4,10 +4,12 @@ use super::*;
 
 #[test]
 fn every_kind_has_its_own_entity() {
-    for entity in &ENTITIES {
+    for entity in ENTITIES
+        .iter()
+        .filter(|entity| !UNSUPPORTED.contains(&entity.name))
+    {
         assert!(std::ptr::eq(of(entity.kind), entity), "{}", entity.name);
         assert!(std::ptr::eq(find(entity.name.as_bytes()).unwrap(), entity));
-        assert!(!UNSUPPORTED.contains(&entity.name));
     }
 }
 

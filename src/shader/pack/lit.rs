@@ -1,11 +1,11 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
 use super::{Packed, f32x3, factor, factors};
-use crate::prepare::extent::Extent;
+use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, U, round_up, upper_bound};
-use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
+use crate::shader::records::{Light, LitObject, Material, ThirdSide, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
 #[derive(Debug, Clone)]
@@ -16,12 +16,16 @@ pub struct Lit {
     pub materials: Vec<Material>,
     /// The scene's lights.
     pub lights: Vec<Light>,
-    /// Every plane.
+    /// Every plane, rectangle and triangle.
     pub planes: Vec<WorldPlane>,
+    /// The third sides of the triangles among them.
+    pub third_sides: Vec<ThirdSide>,
     /// Every sphere; those of the tree come first.
     pub spheres: Vec<WorldSphere>,
-    /// How many of the spheres the tree holds.
+    /// How many of the spheres their tree holds.
     pub in_tree: usize,
+    /// How many of the planes are in no tree: the first.
+    pub loose_planes: usize,
     /// Some object is a mirror.
     pub mirror: bool,
     /// Some object lets light through.
@@ -47,6 +51,7 @@ impl Lit {
         for (place, sphere) in (0..).zip(spheres) {
             places[sphere.object] = place | SPHERE_BIT;
         }
+        let mut third_sides = Vec::new();
         let on_surfaces = planes
             .iter()
             .map(|p| &p.lights_on_surface)
@@ -63,9 +68,14 @@ impl Lit {
                 .collect(),
             materials: scene.palette.iter().map(material).collect(),
             lights: world.lights.iter().map(light).collect(),
-            planes: planes.iter().map(|p| world_plane(world, p)).collect(),
+            planes: planes
+                .iter()
+                .map(|p| world_plane(world, p, &mut third_sides))
+                .collect(),
+            third_sides,
             spheres: spheres.iter().map(|s| world_sphere(world, s)).collect(),
             in_tree,
+            loose_planes: world.loose_planes(),
             mirror: used().any(|material| material.mirror),
             transparent: used().any(|material| material.transparent),
             glint: used().any(|material| material.mirror && material.shininess != 0.0),
@@ -74,7 +84,7 @@ impl Lit {
 
     /// Iterations of the loops over objects outside the tree, for one ray.
     pub fn loop_iterations(&self) -> usize {
-        self.planes.len() + self.spheres.len() - self.in_tree
+        self.loose_planes + self.spheres.len() - self.in_tree
     }
 }
 
@@ -151,7 +161,64 @@ fn low_light(plane: &prepare::WorldPlane<Bounded>) -> Option<(u32, f32)> {
     known.then_some((1 << light, height.value as f32))
 }
 
-fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> WorldPlane {
+/// The end of a plane, as its record has it.
+struct Bounds {
+    bounded: u32,
+    rows: [V3<Bounded>; 2],
+    origin: [Bounded; 2],
+    lengths: [Bounded; 2],
+    /// The largest of the numbers that are subtracted.
+    most: f64,
+}
+
+/// The end of a plane; a triangle's third side is put among the others.
+fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<ThirdSide>) -> Bounds {
+    let (none, zero) = (Bounded::zero(), V3::exact(glam::DVec3::ZERO));
+    let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
+    match extent {
+        Extent::Unbounded => Bounds {
+            bounded: 0,
+            rows: [zero; 2],
+            origin: [none; 2],
+            lengths: [none; 2],
+            most: 0.0,
+        },
+        Extent::Rectangle(r) => Bounds {
+            bounded: 1,
+            rows: r.rows,
+            origin: r.origin,
+            lengths: r.dimensions,
+            most: larger_bound(r.origin) + larger_bound(r.dimensions),
+        },
+        Extent::Triangle(sides) => {
+            let unit = |side: &HalfPlane<Bounded>| {
+                let length = side.row.dot(side.row).sqrt();
+                (
+                    side.row * (Bounded::exact(1.0) / length),
+                    side.origin / length,
+                )
+            };
+            let [first, second, third] = sides.each_ref().map(unit);
+            third_sides.push(ThirdSide {
+                row: f32x3(third.0),
+                origin: third.1.value as f32,
+            });
+            Bounds {
+                bounded: 1 + third_sides.len() as u32,
+                rows: [first.0, second.0],
+                origin: [first.1, second.1],
+                lengths: [Bounded::exact(LARGEST); 2],
+                most: larger_bound([first.1, second.1]).max(upper_bound(third.1)),
+            }
+        }
+    }
+}
+
+fn world_plane(
+    world: &World<Bounded>,
+    plane: &prepare::WorldPlane<Bounded>,
+    third_sides: &mut Vec<ThirdSide>,
+) -> WorldPlane {
     let mut axis_mask = [1.0; 3];
     let mut fixed_coordinate = [0.0; 3];
     let mut highest = world.highest.value as f32;
@@ -163,14 +230,14 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
             highest = f32::MAX;
         }
     }
-    let zero = V3::exact(glam::DVec3::ZERO);
-    let none = Bounded::zero();
-    let (bounded, rows, origin, dimensions) = match &plane.extent {
-        Extent::Unbounded => (0, [zero; 2], [none; 2], [none; 2]),
-        Extent::Rectangle(r) => (1, r.rows, r.origin, r.dimensions),
-    };
+    let Bounds {
+        bounded,
+        rows,
+        origin,
+        lengths,
+        most,
+    } = bounds(&plane.extent, third_sides);
     let (low_light, height) = low_light(plane).unwrap_or((0, 0.0));
-    let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
     WorldPlane {
         normal: f32x3(plane.normal),
         offset: plane.offset.value as f32,
@@ -182,13 +249,11 @@ fn world_plane(world: &World<Bounded>, plane: &prepare::WorldPlane<Bounded>) -> 
         origin_0: origin[0].value as f32,
         row_1: f32x3(rows[1]),
         origin_1: origin[1].value as f32,
-        lengths: dimensions.map(|d| d.value as f32),
+        lengths: lengths.map(|d| d.value as f32),
         lights_on_surface: bits(&plane.lights_on_surface),
         bounded,
         highest,
-        sides_error: round_up(
-            SIDES_ROUNDINGS * U * (larger_bound(origin) + larger_bound(dimensions)),
-        ),
+        sides_error: round_up(SIDES_ROUNDINGS * U * most),
         low_light,
         height,
     }

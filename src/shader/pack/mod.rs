@@ -17,9 +17,10 @@ use rayon::prelude::*;
 use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, U, W_ROUNDINGS, round_up, upper_bound};
 use super::kind::SurfaceKind;
 use super::records::{
-    BvhNode, CameraNumbers, Object, PackedCamera, Plane, ProceduralPlane, Rectangle, Sphere,
+    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Sphere,
     SphereAndHit, SphereHit, Texplane, TiledPlane,
 };
+use crate::prepare::bvh::Bvh;
 use crate::prepare::plane::Sides;
 use crate::prepare::screen_grid::ScreenGrid;
 use crate::prepare::{self, Prepared};
@@ -42,12 +43,16 @@ pub struct Packed {
     pub kinds: Vec<SurfaceKind>,
     /// Planes without end that a primary ray can hit.
     pub planes: Vec<Plane>,
-    /// Rectangles that a primary ray can hit.
-    pub rectangles: Vec<Rectangle>,
-    /// The tree over the spheres of a lit scene, for rays from anywhere; empty without.
+    /// Rectangles and triangles that a primary ray can hit; last those triangles that are in the screen's cells.
+    pub polygons: Vec<Polygon>,
+    /// How many those are.
+    pub grid_polygons: usize,
+    /// The trees over the spheres and over the triangles of a lit scene, for rays from anywhere; empty without.
     pub bvh: Vec<BvhNode>,
-    /// Depth of the tree.
+    /// Depth of the deeper one.
     pub bvh_depth: usize,
+    /// The root of the triangles' tree, if there is one.
+    pub triangle_root: Option<usize>,
     /// Spheres that a primary ray can hit.
     pub spheres: Vec<Sphere>,
     /// Which of them are seen where on the screen, if they are many.
@@ -93,7 +98,7 @@ impl Packed {
             lattice,
         };
         let screen = &screen;
-        let tree = prepared.world.as_ref().and_then(|world| world.bvh.as_ref());
+        let trees = Trees::new(prepared.world.as_ref());
         let surfaces = Surfaces::new(prepared);
         let mut packed = Self {
             camera: camera(&prepared.camera, screen),
@@ -105,13 +110,11 @@ impl Packed {
                 .collect(),
             kinds: Vec::new(),
             planes: Vec::new(),
-            rectangles: Vec::new(),
-            bvh: tree
-                .iter()
-                .flat_map(|bvh| &bvh.nodes)
-                .map(bvh_node)
-                .collect(),
-            bvh_depth: tree.map_or(0, |bvh| bvh.depth),
+            polygons: Vec::new(),
+            grid_polygons: 0,
+            bvh: trees.nodes,
+            bvh_depth: trees.depth,
+            triangle_root: trees.triangle_root,
             spheres: Vec::new(),
             screen_grid: prepared.screen_grid.clone(),
             sphere_points: Vec::new(),
@@ -135,7 +138,7 @@ impl Packed {
         } else {
             let planes = packed.planes.iter().map(|p| p.object);
             let objects: Vec<u32> = planes
-                .chain(packed.rectangles.iter().map(|r| r.object))
+                .chain(packed.polygons.iter().map(|r| r.object))
                 .collect();
             for object in objects {
                 packed.pack_surface(prepared, object as usize, &mut textures, 0);
@@ -166,13 +169,16 @@ impl Packed {
                     self.planes
                         .push(primary::plane(&scene.camera, plane, screen, group))
                 }
-                Sides::Rectangle(strips) => self.rectangles.push(primary::rectangle(
-                    &scene.camera,
-                    plane,
-                    strips,
-                    screen,
-                    group,
-                )),
+                Sides::Rectangle(strips) => {
+                    let sides = primary::rectangle(&scene.camera, plane, strips, screen);
+                    let base = primary::plane(&scene.camera, plane, screen, group);
+                    self.polygons.push(primary::polygon(base, sides, 0.0));
+                }
+                Sides::Triangle(sides) => {
+                    let sides = primary::triangle(&scene.camera, sides, screen);
+                    let base = primary::plane(&scene.camera, plane, screen, group);
+                    self.polygons.push(primary::polygon(base, sides, 0.0));
+                }
             }
         }
         let max_inverse = |place: usize| {
@@ -189,6 +195,23 @@ impl Packed {
                 primary::sphere(&scene.camera, sphere, screen, max_inverse(place))
             })
             .collect();
+        let grid_polygons = scene
+            .triangles
+            .par_iter()
+            .enumerate()
+            .filter_map(|(i, plane)| {
+                let Sides::Triangle(sides) = &plane.sides else {
+                    return None;
+                };
+                let sides = primary::triangle(&scene.camera, sides, screen);
+                // Triangles of a cell are not in the order of the file, so that none stands for others on its plane.
+                let base = primary::plane(&scene.camera, plane, screen, 0);
+                let max_inverse = max_inverse(scene.spheres.len() + i);
+                Some(primary::polygon(base, sides, max_inverse))
+            });
+        let before = self.polygons.len();
+        self.polygons.par_extend(grid_polygons);
+        self.grid_polygons = self.polygons.len() - before;
         // Plain spheres without light are not looked at where they are hit.
         let psphere =
             |surface: &prepare::Surface<Bounded>| matches!(surface, prepare::Surface::Psphere(_));
@@ -282,7 +305,7 @@ impl Packed {
 
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
-        self.planes.len() + self.rectangles.len() + self.spheres.len()
+        self.planes.len() + self.polygons.len() + self.spheres.len()
     }
 
     /// About how many tests a pixel costs: a tree's spheres cost by their number's logarithm.
@@ -302,7 +325,17 @@ impl Packed {
             Some(_) => 0,
             None => self.spheres.len(),
         };
-        self.planes.len() + self.rectangles.len() + spheres
+        self.planes.len() + self.loose_polygons() + spheres
+    }
+
+    /// How many of the polygons are in no cell of the screen.
+    pub fn loose_polygons(&self) -> usize {
+        self.polygons.len() - self.grid_polygons
+    }
+
+    /// The polygon of this place in the cells of the screen, which count spheres first.
+    pub fn grid_polygon(&self, place: usize) -> &Polygon {
+        &self.polygons[self.loose_polygons() + place - self.spheres.len()]
     }
 
     /// Where the list of each cell starts in what this returns, and where the last one ends; then the lists.
@@ -382,12 +415,38 @@ fn object(ambient: V3<Bounded>) -> Object {
     }
 }
 
-fn bvh_node(node: &prepare::bvh::Node) -> BvhNode {
-    BvhNode {
-        min: node.min,
-        first: node.first,
-        max: node.max,
-        count: node.count,
+/// The nodes of the spheres' tree, then of the triangles'.
+#[derive(Default)]
+struct Trees {
+    nodes: Vec<BvhNode>,
+    depth: usize,
+    triangle_root: Option<usize>,
+}
+
+impl Trees {
+    fn new(world: Option<&prepare::World<Bounded>>) -> Self {
+        let mut trees = Self::default();
+        let Some(world) = world else { return trees };
+        if let Some(tree) = &world.bvh {
+            trees.add(tree, 0);
+        }
+        if let Some(tree) = &world.triangle_tree {
+            trees.triangle_root = Some(trees.nodes.len());
+            trees.add(tree, world.loose_planes());
+        }
+        trees
+    }
+
+    /// Adds the nodes of a tree whose leaves begin to count at `first`.
+    fn add(&mut self, tree: &Bvh, first: usize) {
+        let root = self.nodes.len();
+        self.depth = self.depth.max(tree.depth);
+        self.nodes.extend(tree.nodes.iter().map(|node| BvhNode {
+            min: node.min,
+            first: node.first + if node.count == 0 { root } else { first } as u32,
+            max: node.max,
+            count: node.count,
+        }));
     }
 }
 

@@ -1,14 +1,14 @@
 //! What primary rays can hit, as forms over the pixel with literal error bounds: planes, rectangles, spheres.
 
 use crate::prepare::camera::ANCHOR_LIMIT;
-use crate::prepare::plane::{Step, Strip};
+use crate::prepare::plane::{Side, Step, Strip};
 use crate::prepare::{self, Camera};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{
     FLOOR, Form, GROWTH, LEAST_NORMAL, OUTLINE_ROUNDINGS, OUTLINE_SHARE, Screen, U, linear,
     quadratic, round_up, step, upper_bound,
 };
-use crate::shader::records::{Plane, Rectangle, Sphere, SphereHit};
+use crate::shader::records::{Plane, Polygon, Sphere, SphereHit};
 
 fn number(value: f64) -> Bounded {
     Bounded::exact(value)
@@ -61,38 +61,65 @@ pub(super) fn plane(
     }
 }
 
+/// A side as a form over the pixel, exactly where it runs along a column or a row.
+fn side(
+    camera: &Camera<Bounded>,
+    form: &[Bounded; 3],
+    exact: Option<&Step>,
+    screen: &Screen,
+) -> Form<3> {
+    exact
+        .and_then(|s| step(s, camera.anchor, screen))
+        .unwrap_or_else(|| {
+            linear(
+                over_pixels(camera, form),
+                screen.reach(camera.anchor),
+                screen,
+            )
+        })
+}
+
+/// The four sides of a rectangle.
 pub(super) fn rectangle(
     camera: &Camera<Bounded>,
     plane: &prepare::Plane<Bounded>,
     strips: &[Strip<Bounded>; 2],
     screen: &Screen,
-    group: u32,
-) -> Rectangle {
-    let reach = screen.reach(camera.anchor);
-    let base = self::plane(camera, plane, screen, group);
-    let side = |form: &[Bounded; 3], exact: &Option<Step>| -> Form<3> {
-        exact
-            .as_ref()
-            .and_then(|s| step(s, camera.anchor, screen))
-            .unwrap_or_else(|| linear(over_pixels(camera, form), reach, screen))
-    };
+) -> [Form<3>; 4] {
     let q = plane.inverse;
     let [[a, c], [b, d]] = strips.each_ref().map(|strip| {
         let (p, [start, end]) = (strip.form, &strip.steps);
         let rest = [0, 1, 2].map(|k| strip.length * q[k] - p[k]);
-        [side(&p, start), side(&rest, end)]
+        [(p, start), (rest, end)].map(|(form, step)| side(camera, &form, step.as_ref(), screen))
     });
-    Rectangle {
+    [a, b, c, d]
+}
+
+/// The three sides of a triangle, and a fourth that everything is within.
+pub(super) fn triangle(
+    camera: &Camera<Bounded>,
+    sides: &[Side<Bounded>; 3],
+    screen: &Screen,
+) -> [Form<3>; 4] {
+    let [a, b, c] = sides
+        .each_ref()
+        .map(|s| side(camera, &s.form, s.step.as_ref(), screen));
+    [a, b, c, ([0.0, 0.0, 1.0], 0.0)]
+}
+
+/// The record of a plane with these sides; its hits' 1/s are at most `max_inverse`, where that is asked.
+pub(super) fn polygon(base: Plane, [a, b, c, d]: [Form<3>; 4], max_inverse: f32) -> Polygon {
+    Polygon {
         inverse: base.inverse,
         object: base.object,
         front: base.front,
-        group,
+        group: base.group,
         side_0: a.0,
         inverse_error: base.inverse_error,
         side_1: b.0,
         front_error: base.front_error,
         side_2: c.0,
-        pad_0: Default::default(),
+        max_inverse,
         side_3: d.0,
         pad_1: Default::default(),
         side_errors: [a.1, b.1, c.1, d.1],

@@ -46,22 +46,22 @@ fn control_characters_do_not_reach_the_terminal() {
     check(
         "camera\x1B[31m cam { }",
         expect![[r#"
-        error: there is no entity `camera\u{1b}[31m`
-          --> scene.txt:1:1
-          |
-        1 | camera�[31m cam { }
-          | ^^^^^^^^^^^
-          |
-          = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+            error: there is no entity `camera\u{1b}[31m`
+              --> scene.txt:1:1
+              |
+            1 | camera�[31m cam { }
+              | ^^^^^^^^^^^
+              |
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
 
-        error: this scene has no camera
-          --> scene.txt:1:20
-          |
-        1 | camera�[31m cam { }
-          |                    ^
-          |
-          = help: a scene needs `camera name { pixeldim 640 480 worlddim 8 6 viewpoint 4 3 6 }`, for example
-    "#]],
+            error: this scene has no camera
+              --> scene.txt:1:20
+              |
+            1 | camera�[31m cam { }
+              |                    ^
+              |
+              = help: a scene needs `camera name { pixeldim 640 480 worlddim 8 6 viewpoint 4 3 6 }`, for example
+        "#]],
     );
 }
 
@@ -84,14 +84,14 @@ fn lines_are_cut() {
     check(
         format!("{CAMERA}{}", "ä".repeat(100_000)),
         expect![[r#"
-        error: there is no entity `ääääääääääääääääääääääääääääääääääääääää...`
-          --> scene.txt:2:1
-          |
-        2 | ääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääää...
-          | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-          |
-          = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
-    "#]],
+            error: there is no entity `ääääääääääääääääääääääääääääääääääääääää...`
+              --> scene.txt:2:1
+              |
+            2 | ääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääääää...
+              | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+              |
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
+        "#]],
     );
 }
 

@@ -29,14 +29,14 @@ fn mistakes_that_look_like_others() {
     check_rest(
         "red { ambient 1 1 1 }\nplane wall { material red normal 0 0 1 point 0 0 0 }",
         expect![[r#"
-        error: there is no entity `red`
-          --> scene.txt:3:1
-          |
-        3 | red { ambient 1 1 1 }
-          | ^^^
-          |
-          = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
-    "#]],
+            error: there is no entity `red`
+              --> scene.txt:3:1
+              |
+            3 | red { ambient 1 1 1 }
+              | ^^^
+              |
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
+        "#]],
     );
     // A second `}` after a whole entity.
     check_rest(

@@ -7,6 +7,7 @@ mod limits;
 mod lookalikes;
 mod names;
 mod reports;
+mod triangles;
 mod values;
 
 use std::path::Path;

@@ -15,7 +15,7 @@ fn unknown_entity() {
             3 | teapot utah { size 3 }
               | ^^^^^^
               |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
 
             error: `radius` must be greater than 0
               --> scene.txt:4:50
@@ -73,15 +73,15 @@ fn unsupported_entity() {
             3 | quadric cone { a 1 }
               | ^^^^^^^
               |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
 
-            error: `triangle` is not supported
+            error: this `triangle` lacks `material`, `vertex1`, `vertex2`, `vertex3`
               --> scene.txt:4:1
               |
             4 | triangle t { }
-              | ^^^^^^^^
+              | ^^^^^^^^^^
               |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+              = help: add `material name`, `vertex1 0 0 0`, `vertex2 1 0 0`, `vertex3 0 1 0`, for example
 
             error: `projector` is not supported
               --> scene.txt:5:1
@@ -89,7 +89,7 @@ fn unsupported_entity() {
             5 | projector p { }
               | ^^^^^^^^^
               |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
 
             error: `revsurf` is not supported
               --> scene.txt:6:1
@@ -97,7 +97,7 @@ fn unsupported_entity() {
             6 | revsurf r { }
               | ^^^^^^^
               |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, texture, texplane
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
         "#]],
     );
 }
@@ -125,7 +125,7 @@ fn unknown_attribute() {
             3 | sphere ball { material green center 0 0 0 radius 1 emissivity 1 2 3 }
               |                                                    ^^^^^^^^^^
               |
-              = help: `emissivity` belongs to light, spotlight; `sphere` has `material`, `center`, `radius`
+              = help: `emissivity` belongs to light, spotlight, projector; `sphere` has `material`, `center`, `radius`
         "#]],
     );
     check_rest(

@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, SamplePattern, Settings};
 use plumb::scene::{
-    Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface, Texels,
-    Texture, TextureMode,
+    self, Beam, Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface,
+    Texels, Texture, TextureMode,
 };
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
@@ -32,6 +32,9 @@ pub(super) enum Ingredient {
     ManySpheres,
     Values,
     Rectangle,
+    Triangle,
+    Ptriangle(u32),
+    ManyTriangles,
     TiledAlong,
     Texplane(TextureMode),
     Lamp,
@@ -60,6 +63,8 @@ pub(super) fn ingredients() -> Vec<Ingredient> {
         ManySpheres,
         Values,
         Rectangle,
+        Triangle,
+        ManyTriangles,
         TiledAlong,
         Texplane(TextureMode::Fit),
         Texplane(TextureMode::Tile),
@@ -73,7 +78,7 @@ pub(super) fn ingredients() -> Vec<Ingredient> {
         Samples,
         CourseSamples,
     ];
-    all.extend((0..PPLANE_SHADERS).map(Pplane));
+    all.extend((0..PPLANE_SHADERS).flat_map(|n| [Pplane(n), Ptriangle(n)]));
     all.extend((0..PSPHERE_SHADERS).flat_map(|n| [SmallPsphere(n), WidePsphere(n)]));
     all
 }
@@ -150,6 +155,17 @@ pub(super) fn objects(ingredient: Ingredient) -> Vec<Object> {
             })
             .collect(),
         Rectangle => vec![rectangle(Surface::Plain)],
+        Triangle => vec![triangle(DVec3::new(1.0, 1.0, -7.0), Surface::Plain)],
+        Ptriangle(shader) => {
+            let corner = DVec3::new(2.0, 4.0, -7.5);
+            vec![triangle(corner, Surface::Procedural { shader })]
+        }
+        ManyTriangles => (0..100)
+            .map(|i| {
+                let corner = DVec3::new(f64::from(i % 8), f64::from(i / 8 % 6), -20.0);
+                triangle(corner, Surface::Plain)
+            })
+            .collect(),
         Coplanar => {
             let wall = plane(DVec3::Z, DVec3::new(0.0, 0.0, -4.0), Surface::Plain);
             vec![rectangle(Surface::Plain), wall]
@@ -174,6 +190,21 @@ fn of_material(material: usize, object: Object) -> Object {
     Object { material, ..object }
 }
 
+fn triangle(corner: DVec3, surface: Surface) -> Object {
+    let (a, b) = (DVec3::new(1.0, 0.0, -0.5), DVec3::new(0.25, 1.0, 0.0));
+    let shape = Shape::Triangle(scene::Triangle {
+        vertices: [corner, corner + a, corner + b],
+        normal: None,
+        point: None,
+    });
+    Object {
+        name: "t".into(),
+        material: 0,
+        shape,
+        surface,
+    }
+}
+
 fn rectangle(surface: Surface) -> Object {
     let extent = Extent::Rectangle(Rectangle {
         xdir: DVec3::X,
@@ -193,18 +224,18 @@ fn rectangle(surface: Surface) -> Object {
 }
 
 fn lights(ingredient: Ingredient) -> Vec<Light> {
-    let light = |y, cone| Light {
-        cone,
+    let light = |y, beam| Light {
+        beam,
         ..light(DVec3::new(4.0, y, 2.0))
     };
     match ingredient {
         // What materials do is seen by light alone.
-        Lamp | Mirror | Glass | Glint => vec![light(6.0, None)],
-        LampInFloor => vec![light(-1.0, None)],
-        LampOverFloor => vec![light(-0.999, None)],
+        Lamp | Mirror | Glass | Glint => vec![light(6.0, Beam::Everywhere)],
+        LampInFloor => vec![light(-1.0, Beam::Everywhere)],
+        LampOverFloor => vec![light(-0.999, Beam::Everywhere)],
         Spotlight => vec![light(
             6.0,
-            Some(Cone {
+            Beam::Cone(Cone {
                 point: DVec3::ZERO,
                 theta: 20.0,
             }),

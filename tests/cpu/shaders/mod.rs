@@ -22,7 +22,7 @@ use ingredients::{composed, ingredients, objects, packed};
 /// Whether an ingredient is a procedural surface whose shader, or one that it calls, names `helper`.
 fn asks(ingredient: Ingredient, helper: &str) -> bool {
     match ingredient {
-        Pplane(shader) => procedural::asks(Family::Pplane, shader, helper),
+        Pplane(shader) | Ptriangle(shader) => procedural::asks(Family::Pplane, shader, helper),
         SmallPsphere(shader) | WidePsphere(shader) => {
             procedural::asks(Family::Psphere, shader, helper)
         }
@@ -56,7 +56,8 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     let (wgsl, features) = composed(&all);
     assert_valid(&wgsl, "all");
     // A scene that has everything but many objects has them as literals, and one without lights has other shapes.
-    let few = |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres | Fast | Values);
+    let few =
+        |i: &Ingredient| !matches!(i, ManyPlanes | ManySpheres | ManyTriangles | Fast | Values);
     let dark = |i: &Ingredient| {
         !matches!(
             i,
@@ -197,8 +198,11 @@ fn what_is_not_used_is_not_there() {
                     | LampOverFloor
             )
         }),
-        ("rectangle_hits", &|i| {
-            matches!(i, Rectangle | Texplane(_) | Coplanar)
+        ("polygon_hits", &|i| {
+            matches!(
+                i,
+                Rectangle | Texplane(_) | Coplanar | Triangle | Ptriangle(_) | ManyTriangles
+            )
         }),
         ("plane.front.x *", &|i| i == PlaneAcrossTheScreen),
         ("sphere_hits(", &|i| {
@@ -217,26 +221,36 @@ fn what_is_not_used_is_not_there() {
         ("rival", &|i| {
             !matches!(i, Values | Fast) && !objects(i).is_empty()
         }),
-        ("screen_grid[", &|i| i == ManySpheres),
+        ("screen_grid[", &|i| {
+            matches!(i, ManySpheres | ManyTriangles)
+        }),
         ("bvh", &|_| false),
         ("Tiled", &|i| matches!(i, Tiled | TiledAlong)),
-        ("Pplane", &|i| matches!(i, Pplane(_))),
+        ("Pplane", &|i| matches!(i, Pplane(_) | Ptriangle(_))),
         ("Texplane", &|i| matches!(i, Texplane(_))),
         ("pplane_0_tiles", &|i| asks(i, "pplane_0_tiles(")),
         ("pplane_1_angle", &|i| asks(i, "pplane_1_angle(")),
         ("psphere_0_angle", &|i| asks(i, "psphere_0_angle(")),
         ("color_wheel", &|i| asks(i, "color_wheel(")),
         ("fn index_table(", &|i| {
-            matches!(i, Tiled | Texplane(_)) || asks(i, "pplane_odd(")
+            matches!(i, Tiled | Texplane(_)) || matches!(i, Pplane(_)) && asks(i, "pplane_odd(")
         }),
         ("vec4u(bitcast", &|i| i == Values),
         ("fn make_pixel", &|i| {
-            !objects(i).is_empty() && !lit(i) && !matches!(i, ManyPlanes | ManySpheres)
+            !objects(i).is_empty()
+                && !lit(i)
+                && !matches!(i, ManyPlanes | ManySpheres | ManyTriangles)
         }),
         ("switch", &|i| {
             matches!(
                 i,
-                Tiled | TiledAlong | Pplane(_) | Texplane(_) | SmallPsphere(_) | WidePsphere(_)
+                Tiled
+                    | TiledAlong
+                    | Pplane(_)
+                    | Ptriangle(_)
+                    | Texplane(_)
+                    | SmallPsphere(_)
+                    | WidePsphere(_)
             )
         }),
         ("light_term", &lit),

@@ -4,7 +4,7 @@ use glam::DVec3;
 use plumb::gpu::device::Gpu;
 
 use super::support::{BoundStatistics, Rng, TrueRay, run};
-use super::world::{RayErrors, TruePlane, World, inputs, ray, true_plane};
+use super::world::{RayErrors, TruePlane, World, inputs_of_planes, ray, true_plane};
 
 /// Mirrors and panes on a path.
 const BOUNCES: usize = 4;
@@ -118,7 +118,7 @@ pub(crate) fn branches(
         (8, bytemuck::cast_slice(&world.packed.tiled_planes)),
         (12, bytemuck::cast_slice(&lit.materials)),
     ];
-    let bound = [&inputs(world)[..], &tints].concat();
+    let bound = [&inputs_of_planes(world)[..], &tints].concat();
     let answers = run(gpu, wgsl, &body, &items, &bound, count, 3);
     let mut seen = names.map(BoundStatistics::new);
     for (answer, path) in answers.chunks(3).zip(&paths) {

@@ -201,16 +201,12 @@ pub(crate) fn literal(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     );
     planes(
         "a rectangle's inverse_error",
-        |p| p.rectangles.iter_mut().for_each(|r| r.inverse_error = 0.0),
+        |p| p.polygons.iter_mut().for_each(|r| r.inverse_error = 0.0),
         1,
     );
     planes(
         "a rectangle's side_errors",
-        |p| {
-            p.rectangles
-                .iter_mut()
-                .for_each(|r| r.side_errors = [0.0; 4])
-        },
+        |p| p.polygons.iter_mut().for_each(|r| r.side_errors = [0.0; 4]),
         1,
     );
     let mut spheres = |name, fault: fn(&mut Packed), kind: usize| {

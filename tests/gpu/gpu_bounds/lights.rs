@@ -3,7 +3,7 @@
 use glam::DVec3;
 use plumb::gpu::device::Gpu;
 use plumb::render::Settings;
-use plumb::scene::{Camera, Extent, Light, Scene, Shape, Surface};
+use plumb::scene::{Beam, Camera, Extent, Light, Scene, Shape, Surface};
 use plumb::shader::bounds::round_up;
 
 use super::support::{BoundStatistics, Rng, rounded, run};
@@ -22,7 +22,7 @@ fn world() -> World {
         name: "l".into(),
         location: LIGHT,
         emissivity: DVec3::ONE,
-        cone: None,
+        beam: Beam::Everywhere,
     };
     let scene = Scene {
         camera: Camera { ..camera([64, 48]) },

@@ -128,7 +128,7 @@ fn primary_rays() {
     let gpu = support::open();
     let mut camera =
         ["W_ERROR", "LENGTH_ERROR", "DIR_ERROR", "VALUE_ERROR"].map(BoundStatistics::new);
-    let mut planes = ["plane_hits", "rectangle_hits", "locate on planes"].map(BoundStatistics::new);
+    let mut planes = ["plane_hits", "polygon_hits", "locate on planes"].map(BoundStatistics::new);
     let mut spheres = ["sphere_hits", "sphere_normal"].map(BoundStatistics::new);
     for picture in SampledPicture::all() {
         let wgsl = &picture.world.wgsl;

@@ -21,9 +21,9 @@ pub(crate) fn without_literal_bounds(packed: &mut Packed) {
     for plane in &mut packed.planes {
         (plane.inverse_error, plane.front_error) = (0.0, 0.0);
     }
-    for rectangle in &mut packed.rectangles {
-        (rectangle.inverse_error, rectangle.front_error) = (0.0, 0.0);
-        rectangle.side_errors = [0.0; 4];
+    for polygon in &mut packed.polygons {
+        (polygon.inverse_error, polygon.front_error) = (0.0, 0.0);
+        polygon.side_errors = [0.0; 4];
     }
     for sphere in &mut packed.spheres {
         (sphere.along_error, sphere.disc_error) = (0.0, 0.0);

@@ -7,7 +7,7 @@ use plumb::render::{SamplePattern, Settings};
 use plumb::scene::{Camera, Extent, Rectangle, Scene, Shape, Surface};
 
 use super::support::{BoundStatistics, Rng, run};
-use super::world::{World, materials, object};
+use super::world::{World, about_triangle, is_between, materials, object, triangle};
 
 /// A scene without lights, of planes, rectangles and spheres of all sizes, that are too many for the shader's text.
 fn scene(rng: &mut Rng, camera: Camera) -> Scene {
@@ -18,6 +18,11 @@ fn scene(rng: &mut Rng, camera: Camera) -> Scene {
         let far = rng.log(-1.0, 2.0);
         let mut point = DVec3::new(0.5, 0.5, 0.0) * camera.worlddim.extend(0.0) + rng.within(far);
         point.z = point.z.min(-0.1 * far);
+        if i % 4 == 1 {
+            let shape = triangle(rng, normal, point);
+            objects.push(object(shape, Surface::Procedural { shader: 0 }, 0));
+            continue;
+        }
         let extent = if i % 2 == 0 {
             Extent::Rectangle(Rectangle {
                 xdir: normal.cross(rng.unit()),
@@ -70,15 +75,21 @@ fn sides(rectangle: &Rectangle, normal: DVec3) -> [DVec3; 2] {
     [first, normal.cross(first)]
 }
 
-/// Whether a point of a plane is within its sides; `from_corner` leads there.
-fn is_inside(extent: &Extent, normal: DVec3, from_corner: DVec3) -> bool {
-    match extent {
-        Extent::Unbounded => true,
-        Extent::Rectangle(r) => {
+/// Whether a point of the plane of a shape is within its sides; `normal` is of unit length.
+fn is_inside(shape: &Shape, normal: DVec3, hit: DVec3) -> bool {
+    match shape {
+        Shape::Plane {
+            extent: Extent::Rectangle(r),
+            point,
+            ..
+        } => {
             let [first, second] = sides(r, normal);
+            let from_corner = hit - point;
             (0.0..=r.dimensions.x).contains(&from_corner.dot(first))
                 && (0.0..=r.dimensions.y).contains(&from_corner.dot(second))
         }
+        Shape::Triangle(triangle) => is_between(&triangle.vertices, hit),
+        Shape::Plane { .. } | Shape::Sphere { .. } | Shape::Quadric(_) => true,
     }
 }
 
@@ -232,23 +243,30 @@ impl SampledPicture {
         vec![(2, bytemuck::cast_slice(&packed.objects)), (5, spheres)]
     }
 
-    /// The unit normal of a plane, its point and where it ends.
-    fn plane(&self, object: u32) -> (DVec3, DVec3, &Extent) {
-        match &self.world.scene.objects[object as usize].shape {
-            Shape::Plane {
-                normal,
-                point,
-                extent,
-            } => (normal.normalize(), *point, extent),
-            Shape::Sphere { .. } => panic!("no plane"),
+    /// The unit normal of a plane, a point on it, and the shape.
+    fn plane(&self, object: u32) -> (DVec3, DVec3, &Shape) {
+        let shape = &self.world.scene.objects[object as usize].shape;
+        match shape {
+            Shape::Plane { normal, point, .. } => (normal.normalize(), *point, shape),
+            Shape::Triangle(triangle) => {
+                let [a, b, c] = triangle.vertices;
+                ((b - a).cross(c - a).normalize(), a, shape)
+            }
+            Shape::Sphere { .. } | Shape::Quadric(_) => panic!("no plane"),
         }
     }
 
-    /// A pixel that sees a plane: anywhere; of a rectangle most often in it, at an edge, or next to it.
+    /// A pixel that sees a plane: anywhere; of a rectangle or triangle most often in it, at an edge, or next to it.
     fn toward_plane(&self, rng: &mut Rng, object: u32) -> DVec2 {
-        let (normal, point, extent) = self.plane(object);
-        match extent {
-            Extent::Rectangle(r) if rng.chance(0.7) => {
+        let (normal, point, shape) = self.plane(object);
+        match shape {
+            Shape::Triangle(triangle) if rng.chance(0.7) => {
+                self.seen_at(about_triangle(rng, &triangle.vertices))
+            }
+            Shape::Plane {
+                extent: Extent::Rectangle(r),
+                ..
+            } if rng.chance(0.7) => {
                 let mut share = [0, 1].map(|_| rng.uniform(-0.1, 1.1));
                 if rng.chance(0.5) {
                     share[rng.below(2)] = rng.below(2) as f64 + rng.sign() * rng.log(-9.0, -3.0);
@@ -257,7 +275,7 @@ impl SampledPicture {
                 let along = first * r.dimensions.x * share[0];
                 self.seen_at(point + along + second * r.dimensions.y * share[1])
             }
-            Extent::Rectangle(_) | Extent::Unbounded => self.anywhere(rng),
+            _ => self.anywhere(rng),
         }
     }
 
@@ -271,13 +289,13 @@ impl SampledPicture {
     ) {
         let packed = &self.world.packed;
         let planes = packed.planes.iter().map(|p| p.object);
-        let rectangles = packed.rectangles.iter().map(|r| r.object);
+        let rectangles = packed.polygons.iter().map(|r| r.object);
         let both: [Vec<u32>; 2] = [planes.collect(), rectangles.collect()];
         let records: [(u32, &[u8]); 2] = [
             (3, bytemuck::cast_slice(&packed.planes)),
-            (4, bytemuck::cast_slice(&packed.rectangles)),
+            (4, bytemuck::cast_slice(&packed.polygons)),
         ];
-        let calls = [("plane_hits", "planes"), ("rectangle_hits", "rectangles")];
+        let calls = [("plane_hits", "planes"), ("polygon_hits", "polygons")];
         let spheres = packed.sphere_records();
         let spheres: &[u8] = bytemuck::cast_slice(&spheres);
         for kind in 0..2 {
@@ -301,14 +319,15 @@ impl SampledPicture {
             inputs.push(records[kind]);
             let answers = run(gpu, wgsl, &body, &items, &inputs, count, 2);
             for (i, (answer, w)) in answers.chunks(2).zip(rays).enumerate() {
-                let (normal, point, extent) = self.plane(objects[i % n]);
-                let point = (point - self.world.scene.camera.viewpoint) / self.unit;
+                let (normal, point, shape) = self.plane(objects[i % n]);
+                let viewpoint = self.world.scene.camera.viewpoint;
+                let point = (point - viewpoint) / self.unit;
                 let inverse = normal.dot(w) / normal.dot(point);
                 let [found, error, hit, possible] = answer[0].map(f64::from);
                 seen[kind].error((found - inverse).abs(), error);
                 if inverse > 0.0 {
                     let s = 1.0 / inverse;
-                    let inside = is_inside(extent, normal, (w * s - point) * self.unit);
+                    let inside = is_inside(shape, normal, viewpoint + w * s * self.unit);
                     seen[kind].decision(hit == 1.0, possible == 1.0, inside && s >= 1.0);
                     // Nothing is made of a point whose 1/s may be 0.
                     if hit == 1.0 && found > 4.0 * error {
@@ -337,7 +356,9 @@ impl SampledPicture {
             .map(
                 |s| match self.world.scene.objects[s.object as usize].shape {
                     Shape::Sphere { center, radius } => (center, radius),
-                    Shape::Plane { .. } => panic!("no sphere"),
+                    Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => {
+                        panic!("no sphere")
+                    }
                 },
             )
             .collect();

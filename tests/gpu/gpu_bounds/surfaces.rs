@@ -187,8 +187,10 @@ pub(crate) fn blocks(
     for (i, (answer, p)) in answers.chunks(3).zip(points).enumerate() {
         let record = &records[i % n];
         let hit = p * UNIT + VIEWPOINT;
-        let Shape::Plane { point, .. } = &objects[i % n].shape else {
-            panic!("no plane")
+        let point = match &objects[i % n].shape {
+            Shape::Plane { point, .. } => point,
+            Shape::Triangle(triangle) => &triangle.vertices[0],
+            Shape::Sphere { .. } | Shape::Quadric(_) => panic!("no plane"),
         };
         for k in 0..3 {
             if record.per_unit[k] == 0.0 {

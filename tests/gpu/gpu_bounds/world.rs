@@ -1,9 +1,9 @@
 //! Running bounds: rays from anywhere against planes, rectangles and spheres.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use plumb::gpu::device::Gpu;
 use plumb::render::Settings;
-use plumb::scene::{Camera, Extent, Material, Object, Rectangle, Scene, Shape, Surface};
+use plumb::scene::{Camera, Extent, Material, Object, Rectangle, Scene, Shape, Surface, Triangle};
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::pack::Packed;
@@ -75,6 +75,15 @@ pub(crate) fn scene(rng: &mut Rng, planes: usize, spheres: usize) -> Scene {
         // A wall before the screen is none.
         point.z = point.z.min(-0.5 * size.min(1.0));
         let across = normal.cross(rng.unit());
+        if rng.chance(0.15) {
+            let shape = triangle(rng, normal, point);
+            let surface = match i % 2 {
+                0 => Surface::Plain,
+                _ => Surface::Procedural { shader: 2 },
+            };
+            objects.push(object(shape, surface, i % 4));
+            continue;
+        }
         let extent = if rng.chance(0.6) {
             Extent::Rectangle(Rectangle {
                 xdir: across + normal * rng.uniform(0.0, 0.5),
@@ -116,6 +125,23 @@ pub(crate) fn scene(rng: &mut Rng, planes: usize, spheres: usize) -> Scene {
     }
 }
 
+/// A triangle with a corner, of any size and form, in the plane of this normal but for the rounding of its vertices.
+pub(crate) fn triangle(rng: &mut Rng, normal: DVec3, corner: DVec3) -> Shape {
+    let along = normal.cross(rng.unit()).normalize() * rng.log(-1.5, 1.5);
+    let angle = rng.sign() * rng.log(-2.0, 0.4);
+    let turned = DQuat::from_axis_angle(normal.normalize(), angle) * along;
+    let mut vertices = [corner, corner + along, corner + turned * rng.log(-1.0, 1.0)];
+    if normal.to_array().iter().filter(|c| **c != 0.0).count() == 1 {
+        let axis = normal.abs().max_position();
+        vertices.iter_mut().for_each(|v| v[axis] = corner[axis]);
+    }
+    Shape::Triangle(Triangle {
+        vertices,
+        normal: rng.chance(0.5).then_some(-normal),
+        point: None,
+    })
+}
+
 /// A scene with its shader and records.
 pub(crate) struct World {
     pub(crate) scene: Scene,
@@ -155,8 +181,39 @@ pub(crate) struct TruePlane {
     pub(crate) normal: DVec3,
     /// From the viewpoint.
     point: DVec3,
+    sides: TrueSides,
+}
+
+/// Where a plane ends.
+enum TrueSides {
+    None,
     /// Directions of the sides, and their lengths.
-    sides: Option<([DVec3; 2], DVec2)>,
+    Rectangle([DVec3; 2], DVec2),
+    /// The vertices, from the viewpoint.
+    Triangle([DVec3; 3]),
+}
+
+/// Whether a point of the plane of a triangle is in it.
+pub(crate) fn is_between(vertices: &[DVec3; 3], hit: DVec3) -> bool {
+    let [a, b, c] = *vertices;
+    let whole = (b - a).cross(c - a);
+    [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|(from, to)| (to - from).cross(hit - from).dot(whole) >= 0.0)
+}
+
+/// A place in the plane of a triangle: in it, next to it, at an edge, next to a vertex.
+pub(crate) fn about_triangle(rng: &mut Rng, vertices: &[DVec3; 3]) -> DVec3 {
+    let mut share = [0, 1].map(|_| rng.uniform(0.0, 1.0));
+    if share[0] + share[1] > 1.0 && rng.chance(0.8) {
+        share = share.map(|s| 1.0 - s);
+    }
+    if rng.chance(0.3) {
+        share[rng.below(2)] = rng.sign() * rng.log(-9.0, -3.0);
+    }
+    let first = rng.below(3);
+    let [a, b, c] = [0, 1, 2].map(|i| vertices[(first + i) % 3]);
+    a + (b - a) * share[0] + (c - a) * share[1]
 }
 
 impl TruePlane {
@@ -165,34 +222,48 @@ impl TruePlane {
         let t = self.normal.dot(self.point - base) / self.normal.dot(dir);
         let hit = base + t * dir;
         let axis = self.normal.abs().max_element() == 1.0 && self.normal.z != 0.0;
-        let inside = self.sides.is_none_or(|(rows, lengths)| {
-            let from = hit - self.point;
-            (0.0..=lengths.x).contains(&from.dot(rows[0]))
-                && (0.0..=lengths.y).contains(&from.dot(rows[1]))
-        });
+        let inside = match &self.sides {
+            TrueSides::None => true,
+            TrueSides::Rectangle(rows, lengths) => {
+                let from = hit - self.point;
+                (0.0..=lengths.x).contains(&from.dot(rows[0]))
+                    && (0.0..=lengths.y).contains(&from.dot(rows[1]))
+            }
+            TrueSides::Triangle(vertices) => is_between(vertices, hit),
+        };
         let below = axis || hit.z <= -VIEWPOINT.z / UNIT;
         (t > 0.0 && inside && below).then_some(t)
     }
 }
 
 pub(crate) fn true_plane(shape: &Shape) -> TruePlane {
-    let Shape::Plane {
-        normal,
-        point,
-        extent,
-    } = shape
-    else {
-        panic!("no plane")
+    let (normal, point, extent) = match shape {
+        Shape::Plane {
+            normal,
+            point,
+            extent,
+        } => (normal, point, extent),
+        Shape::Triangle(triangle) => {
+            let [a, b, c] = triangle.vertices;
+            let normal = (b - a).cross(c - a).normalize();
+            let facing = triangle.normal.unwrap_or(normal);
+            return TruePlane {
+                normal: normal * normal.dot(facing).signum(),
+                point: seen_from_viewpoint(a),
+                sides: TrueSides::Triangle(triangle.vertices.map(seen_from_viewpoint)),
+            };
+        }
+        Shape::Sphere { .. } | Shape::Quadric(_) => panic!("no plane"),
     };
     let normal = normal.normalize();
     TruePlane {
         normal,
         point: seen_from_viewpoint(*point),
         sides: match extent {
-            Extent::Unbounded => None,
+            Extent::Unbounded => TrueSides::None,
             Extent::Rectangle(r) => {
                 let first = (r.xdir - normal * normal.dot(r.xdir)).normalize();
-                Some(([first, normal.cross(first)], r.dimensions / UNIT))
+                TrueSides::Rectangle([first, normal.cross(first)], r.dimensions / UNIT)
             }
         },
     }
@@ -223,14 +294,17 @@ pub(crate) fn ray(
 
 /// A ray to the plane: steep or grazing, to its middle or to its edges, from near or far, or away from it.
 fn toward_plane(rng: &mut Rng, plane: &TruePlane, errors: RayErrors) -> TrueRay {
-    let target = plane.point
-        + match plane.sides {
-            None => {
+    let target = match &plane.sides {
+        TrueSides::Triangle(vertices) => about_triangle(rng, vertices),
+        TrueSides::None => {
+            plane.point + {
                 let size = rng.log(-1.0, 1.0);
                 let way = rng.within(size);
                 way - plane.normal * plane.normal.dot(way)
             }
-            Some((rows, lengths)) => {
+        }
+        TrueSides::Rectangle(rows, lengths) => {
+            plane.point + {
                 let mut p = [0, 1].map(|_| rng.uniform(-0.2, 1.2));
                 if rng.chance(0.3) {
                     p[rng.below(2)] =
@@ -238,7 +312,8 @@ fn toward_plane(rng: &mut Rng, plane: &TruePlane, errors: RayErrors) -> TrueRay 
                 }
                 rows[0] * p[0] * lengths.x + rows[1] * p[1] * lengths.y
             }
-        };
+        }
+    };
     let mut dir = rng.unit();
     if rng.chance(0.3) {
         dir = dir - plane.normal * plane.normal.dot(dir)
@@ -305,6 +380,13 @@ pub(crate) fn inputs(world: &World) -> [(u32, &[u8]); 3] {
     ]
 }
 
+/// The same, with what the shader meets planes with.
+pub(crate) fn inputs_of_planes(world: &World) -> [(u32, &[u8]); 4] {
+    let [a, b, c] = inputs(world);
+    let lit = world.packed.lit.as_ref().unwrap();
+    [a, b, c, (17, bytemuck::cast_slice(&lit.third_sides))]
+}
+
 /// Intersections with planes and rectangles, and where they are, where they are certain.
 pub(crate) fn planes(
     gpu: &Gpu,
@@ -333,7 +415,7 @@ pub(crate) fn planes(
         "{CALL}let m = plane_hits_from(world_planes[record], ray, range);
     let object = world_planes[record].object;{INTERSECTION}"
     );
-    let inputs = inputs(world);
+    let inputs = inputs_of_planes(world);
     let answers = run(gpu, wgsl, &body, &items, &inputs, count, 4);
     let [mut seen, mut points] = names.map(BoundStatistics::new);
     for (i, ray) in rays.iter().enumerate() {
@@ -381,7 +463,7 @@ pub(crate) fn spheres(
         .iter()
         .map(|r| match world.scene.objects[r.object as usize].shape {
             Shape::Sphere { center, radius } => (seen_from_viewpoint(center), radius / UNIT),
-            Shape::Plane { .. } => panic!("no sphere"),
+            Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => panic!("no sphere"),
         })
         .collect();
     let mut rng = Rng(3);

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use plumb::scene::{Extent, Shape};
+use plumb::scene::{Extent, Shape, Triangle};
 
 use super::Fault;
 use super::real::{Real, Unresolved};
@@ -171,11 +171,13 @@ impl World<'_> {
                 extent: Extent::Rectangle(_),
                 ..
             } => {}
+            Shape::Triangle(triangle) => return self.within_triangle(&triangle, hit),
             Shape::Plane {
                 extent: Extent::Unbounded,
                 ..
             }
-            | Shape::Sphere { .. } => return Ok(true),
+            | Shape::Sphere { .. }
+            | Shape::Quadric(_) => return Ok(true),
         }
         let (Form::Plane { point: corner, .. }, Some(sides)) = (&body.form, &body.sides) else {
             panic!("a rectangle is a plane with sides");
@@ -188,6 +190,22 @@ impl World<'_> {
             let edge = low == Ordering::Equal || high == Ordering::Equal;
             let open = self.rules.fault == Some(Fault::OpenRectangle);
             if low == Ordering::Less || high == Ordering::Greater || edge && open {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether a point of the plane of three vertices lies between them: with each two of them, in their order, it
+    /// makes a triangle that is turned as they are.
+    fn within_triangle(&self, triangle: &Triangle, hit: &Vector) -> Result<bool, Unresolved> {
+        let corners = triangle.vertices.map(Vector::from_f64);
+        let turn = |a: &Vector, b: &Vector, c: &Vector| (b - a).cross(&(c - a));
+        let whole = turn(&corners[0], &corners[1], &corners[2]);
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let part = turn(&corners[i], &corners[j], hit).dot(&whole).sign()?;
+            let open = self.rules.fault == Some(Fault::OpenRectangle);
+            if part == Ordering::Less || part == Ordering::Equal && open {
                 return Ok(false);
             }
         }

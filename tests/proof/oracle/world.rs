@@ -3,11 +3,12 @@
 //! Normals keep the length that the file gives them, and so do the sides of rectangles: lengths, which take square
 //! roots, stand apart, where docs/SCENE.md wants unit vectors.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use dashu_ratio::RBig;
 use glam::{DVec2, DVec3};
-use plumb::scene::{self, Extent, Light, Material, Object, Scene, Shape, Surface};
+use plumb::scene::{self, Beam, Extent, Light, Material, Object, Scene, Shape, Surface, Triangle};
 
 use super::Rules;
 use super::angle::cosine_of;
@@ -141,6 +142,18 @@ fn carrier(shape: &Shape) -> (bool, [RBig; 4]) {
             let first = first.expect("a normal is not zero");
             (false, numbers.map(|n| n / &first))
         }
+        Shape::Triangle(Triangle { vertices, .. }) => {
+            let [v1, v2, v3] = vertices.map(exact);
+            let edge = |to: &[RBig; 3]| [0, 1, 2].map(|i| &to[i] - &v1[i]);
+            let (a, b) = (edge(&v2), edge(&v3));
+            let [x, y, z] = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i]);
+            let offset = &x * &v1[0] + &y * &v1[1] + &z * &v1[2];
+            let numbers = [x, y, z, offset];
+            let first = numbers.iter().find(|n| !n.is_zero()).cloned();
+            let first = first.expect("vertices are not in a line");
+            (false, numbers.map(|n| n / &first))
+        }
+        Shape::Quadric(_) => panic!("no scene has a quadric yet"),
     }
 }
 
@@ -155,6 +168,37 @@ fn body(object: &Object, carrier: usize) -> Body<'_> {
             },
             sides: None,
         },
+        Shape::Triangle(Triangle {
+            vertices,
+            normal: facing,
+            ..
+        }) => {
+            let corners = vertices.map(Vector::from_f64);
+            let edge = |from: usize, to: usize| (&corners[to] - &corners[from]).settled();
+            let mut normal = edge(0, 1).cross(&edge(0, 2)).settled();
+            if let Some(facing) = facing
+                && normal
+                    .dot(&Vector::from_f64(facing))
+                    .sign()
+                    .expect("rational numbers have a sign")
+                    == Ordering::Less
+            {
+                normal = normal.scale(&Real::integer(-1)).settled();
+            }
+            // A plane normal to an axis has one coordinate for all its points.
+            let axis = (0..3).find(|i| vertices.iter().all(|v| v[*i] == vertices[0][*i]));
+            Body {
+                object,
+                carrier,
+                sides: None,
+                form: Form::Plane {
+                    normal,
+                    point: Vector::from_f64(vertices[0]),
+                    axis,
+                },
+            }
+        }
+        Shape::Quadric(_) => panic!("no scene has a quadric yet"),
         Shape::Plane {
             normal,
             point,
@@ -210,8 +254,13 @@ fn lamp(light: &Light) -> Lamp {
         name: _,
         location,
         emissivity,
-        cone,
+        beam,
     } = *light;
+    let cone = match beam {
+        Beam::Cone(cone) => Some(cone),
+        Beam::Everywhere => None,
+        Beam::Picture(_) => panic!("no scene has a projector yet"),
+    };
     let location = Vector::from_f64(location);
     Lamp {
         emissivity: Vector::from_f64(emissivity),

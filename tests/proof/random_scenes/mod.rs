@@ -8,6 +8,7 @@
 
 mod motifs;
 mod strategy;
+mod triangles;
 
 use std::time::Instant;
 

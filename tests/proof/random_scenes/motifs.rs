@@ -7,6 +7,7 @@ use proptest::sample::select;
 use super::strategy::{
     ball, cross, hair, light, material, moved, nearly, normal, place, plane, point, radius, show,
 };
+use super::triangles;
 
 /// Objects: one, or some placed together.
 pub(super) fn objects() -> BoxedStrategy<String> {
@@ -16,6 +17,7 @@ pub(super) fn objects() -> BoxedStrategy<String> {
         2 => shaded(),
         2 => tiles(),
         3 => rectangles(),
+        4 => triangles::objects(),
         2 => twin_planes(),
         2 => twin_balls(),
         3 => tangents(),
