@@ -17,7 +17,7 @@ const SCENES: u64 = 100;
 
 /// Most rays that f64 follows for a sample, and most words that exact numbers take for a pixel. Where mirrors and panes
 /// add to the light there is no end but the limits (docs/NUMERICS.md, "What takes long").
-const MOST: [u64; 2] = [1 << 11, 1 << 22];
+const MOST: [u64; 2] = [1 << 9, 1 << 19];
 const MOST_WITH_GAIN: [u64; 2] = [1 << 16, 1 << 27];
 
 /// Whether a mirror or pane may leave more of a weight than there was.
