@@ -49,10 +49,10 @@ fn add_shade(traced: ptr<function, Traced>, ended: Branch, kept: f32, lit: Shade
     let share = ended.weight * (kept / ended.total * CAMERA_GAIN);
     (*traced).color += share * lit.color;
 //#if certified
+    let off = SECOND_ORDER * (ended.weight_error + ended.total_error / ended.total);
     (*traced).error += share
-        * (lit.error * (SECOND_ORDER + ended.weight_error)
-        + lit.color * (ended.weight_error + SECOND_ORDER * ended.total_error / ended.total + SHARE_ROUNDINGS * U))
-        + SUM_ROUNDINGS * U * (*traced).color;
+        * (lit.error * (SECOND_ORDER + SECOND_ORDER * ended.weight_error) + lit.color * (off + SHARE_ROUNDINGS * U))
+        + SUM_ROUNDINGS * U * ((*traced).color + (*traced).error);
 //#end
 }
 //#if mirror
@@ -85,8 +85,8 @@ fn mirror_branch(ended: Branch, at: PathPoint, specular: vec3f) -> Branch {
     mirror.ray.base_error = (1.0 + LINE_ROUNDINGS * U) * (ended.ray.base_error + at.slip.x);
     mirror.ray.start_error = at.t_error + at.slip.y;
     mirror.ray.size = point.size;
-    mirror.total_error = ended.total_error + at.slip.y;
-    mirror.weight_error = ended.weight_error + WEIGHT_ROUNDINGS * U;
+    mirror.total_error = (1.0 + LINE_ROUNDINGS * U) * (ended.total_error + at.slip.y);
+    mirror.weight_error = (1.0 + WEIGHT_GROWTH * U) * ended.weight_error + WEIGHT_ROUNDINGS * U;
 //#else
     mirror.weight = ended.weight * specular;
     mirror.ray.dir = 2.0 * along * point.normal + ended.ray.dir;
@@ -109,8 +109,8 @@ fn through_branch(ended: Branch, at: PathPoint, transparency: f32) -> Branch {
     through.ray.base_error = (1.0 + LINE_ROUNDINGS * U) * (ended.ray.base_error + slip);
     through.ray.start_error = at.t_error + slip;
     through.ray.size = abs(base.x) + abs(base.y) + abs(base.z);
-    through.total_error = ended.total_error + slip;
-    through.weight_error = ended.weight_error + PANE_WEIGHT_ROUNDINGS * U;
+    through.total_error = (1.0 + LINE_ROUNDINGS * U) * (ended.total_error + slip);
+    through.weight_error = (1.0 + WEIGHT_GROWTH * U) * ended.weight_error + PANE_WEIGHT_ROUNDINGS * U;
 //#else
     through.ray.base = point.position;
 //#end

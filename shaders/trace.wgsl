@@ -23,7 +23,7 @@ fn shade(point: Point, seen: SecondaryRay) -> Shade {
         }
         let term = light_term(i, point, seen, diffuse);
         sum.color += term.color;
-        sum.error += term.error + SUM_ROUNDINGS * U * sum.color; //~
+        sum.error += term.error + SUM_ROUNDINGS * U * (sum.color + sum.error); //~
     }
     return sum;
 }

@@ -6,6 +6,7 @@
 //! band are computed again, [`trust`] which devices passed the self-test, [`Tally`] counts what decided how many,
 //! [`verdict`] has a colour for each.
 
+mod first_halt;
 pub mod lanes;
 pub mod pixels;
 pub mod spot;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use super::first_halt::FirstHalt;
 use super::{Decided, DecidedBy, Tally};
 use crate::certify::lanes::{LANES, Lanes};
 use crate::cpu::pixel::ExactTracer;
@@ -83,6 +84,7 @@ impl<'a> PixelDecider<'a> {
             let y = top - row[0] / width;
             (y, self.jitter.row(y).map(Arc::new))
         };
+        let first = FirstHalt::default();
         let decided: Vec<(Vec<Decided>, Tally)> = if places.len() <= FEW {
             rows.map(|places| {
                 let (y, offsets) = row(places);
@@ -99,10 +101,13 @@ impl<'a> PixelDecider<'a> {
                         .map(move |piece| (y, offsets.clone(), piece))
                 })
                 .map(|(y, offsets, piece)| {
-                    self.piece(y, offsets.as_deref().map(Vec::as_slice), piece, known)
+                    first.unless_later(piece[0] as usize, || {
+                        self.piece(y, offsets.as_deref().map(Vec::as_slice), piece, known)
+                    })
                 })
-                .collect::<Result<_, _>>()?
+                .collect()
         };
+        first.end()?;
         let mut tally = Tally::default();
         let mut all = Vec::with_capacity(places.len());
         for (piece, counted) in decided {
@@ -165,6 +170,7 @@ impl<'a> PixelDecider<'a> {
             .min(width);
         let value_lines = lines(&mut values, width, rows.len());
         let verdict_lines = lines(&mut verdicts, width, rows.len());
+        let first_halt = FirstHalt::default();
         let tally = rgb
             .par_chunks_mut(3 * width)
             .zip(value_lines)
@@ -187,11 +193,14 @@ impl<'a> PixelDecider<'a> {
                             values,
                             verdicts,
                         };
-                        self.strip(strip, offsets.as_deref(), lanes)
+                        first_halt.unless_later(line * width + k * piece, || {
+                            self.strip(strip, offsets.as_deref(), lanes)
+                        })
                     })
-                    .try_reduce(Tally::default, |a, b| Ok(a.merge(b)))
+                    .reduce(Tally::default, Tally::merge)
             })
-            .try_reduce(Tally::default, |a, b| Ok(a.merge(b)))?;
+            .reduce(Tally::default, Tally::merge);
+        first_halt.end()?;
         let band = Band {
             rows,
             rgb,

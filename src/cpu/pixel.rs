@@ -55,8 +55,9 @@ fn first_hit<R: Real>(
     }))
 }
 
-/// By which powers of two a ray may be fainter than others and yet be followed, where bytes hang on it.
-const FAINTER: [i32; 2] = [-100, -900];
+/// By which powers of two a ray may be fainter than others and yet be followed, where bytes hang on it; in the end all
+/// are.
+const FAINTER: [Option<i32>; 3] = [Some(-100), Some(-900), None];
 
 /// What is added to the error of a part: more than all that was flushed to 0 in its sums.
 const FLUSHED: f64 = 1.0 / (1_u128 << 100) as f64;
@@ -274,17 +275,17 @@ impl<'a> ExactTracer<'a> {
         x: u32,
         y: u32,
     ) -> (Result<Decided, Fault>, DecidedBy) {
-        let attempt = |fainter: i32| {
+        let attempt = |fainter: Option<i32>| {
             let mut open = false;
             let decided = self.exactly(|scene| {
-                let faint = limits.faint * two_to(fainter);
+                let faint = limits.faint * fainter.map_or(0.0, two_to);
                 let v = make_pixel(scene, &Limits { faint, ..*limits }, sampling, x, y)?;
                 open = v.open != [0.0; 3];
                 Ok(self.decided(v, DecidedBy::Bounded)?)
             });
             (decided, open)
         };
-        let mut last = attempt(0);
+        let mut last = attempt(Some(0));
         for fainter in FAINTER {
             if !matches!(last, ((Err(Fault::Undecided), _), true)) {
                 break;

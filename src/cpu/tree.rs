@@ -74,20 +74,32 @@ impl<'a, R: Real> Tree<'a, R> {
         let longest = R::exact(self.limits.max_path) * R::exact(two_to(-self.scene.camera.scale));
         let mut undecided = false;
         while let Some(ray) = self.waiting.next() {
-            if self.saturated() {
+            if self.full() == [true; 3] {
                 observer.full(self.waiting.len() + 1);
-                return Ok(());
+                break;
             }
-            let minor = self.limits.faint > 0.0 && ray.most.iter().all(|most| *most <= OPEN);
+            // Others may have filled channels in which it counted.
+            if self.faint(&ray) {
+                self.leave_open(&ray);
+                observer.missed(self.rays, &ray, Unmet::Faint);
+                continue;
+            }
             match self.follow(&ray, longest, observer) {
-                Err(Fault::Undecided) if minor => self.leave_open(&ray),
+                Err(Fault::Undecided) if self.within(&ray, OPEN) => self.leave_open(&ray),
                 // The others may be too many already, which takes other numbers much longer to find.
                 Err(Fault::Undecided) if R::JOINS => undecided = true,
                 followed => followed?,
             }
         }
-        if undecided {
+        let full = self.full();
+        if undecided && full != [true; 3] {
             return Err(Fault::Undecided);
+        }
+        // Whatever else there is in a full channel, its byte is the highest.
+        for (open, full) in self.open.iter_mut().zip(full) {
+            if full {
+                *open = 0.0;
+            }
         }
         Ok(())
     }
@@ -125,33 +137,41 @@ impl<'a, R: Real> Tree<'a, R> {
         Ok(())
     }
 
-    /// Whether the colour is certainly at least `enough` in all channels, so that the other rays cannot change the
-    /// bytes.
-    fn saturated(&self) -> bool {
+    /// In which channels the colour is certainly at least `enough`, so that the other rays cannot change the byte.
+    fn full(&self) -> [bool; 3] {
         let (color, enough) = (self.color, self.limits.enough);
-        enough.is_finite()
-            && [color.x, color.y, color.z].into_iter().all(|c| {
-                let Bounded { value, error } = c.quick_enclosure();
-                value - error * Bounded::GROW >= enough * (1.0 + f64::EPSILON)
-            })
+        [color.x, color.y, color.z].map(|c| {
+            let Bounded { value, error } = c.quick_enclosure();
+            enough.is_finite() && value - error * Bounded::GROW >= enough * (1.0 + f64::EPSILON)
+        })
     }
 
-    /// Whether nothing that a ray may bring can count.
+    /// Whether nothing that a ray may bring can count beside what there is.
     fn faint(&self, ray: &Branch<R>) -> bool {
-        let faint = self.limits.faint;
-        faint > 0.0 && ray.most.iter().all(|most| *most <= faint)
+        self.within(ray, self.limits.faint)
+    }
+
+    /// Whether a ray may bring at most so much in all channels that are not full.
+    fn within(&self, ray: &Branch<R>, least: f64) -> bool {
+        let full = self.full();
+        let small = |(most, full): (&f64, bool)| *most <= least || full;
+        self.limits.faint > 0.0 && ray.most.iter().zip(full).all(small)
     }
 
     fn leave_open(&mut self, ray: &Branch<R>) {
-        for (open, most) in self.open.iter_mut().zip(ray.most) {
-            *open += most;
+        let full = self.full();
+        for ((open, most), full) in self.open.iter_mut().zip(ray.most).zip(full) {
+            if !full {
+                *open += most;
+            }
         }
     }
 
     /// What a ray and all that it leaves may bring, in each channel: weight·X/path, with the scene's own X.
     fn most(&self, last: Option<u32>, weight: V3<R>, counts: [bool; 3], total: R) -> [f64; 3] {
-        let brightest = self.world.brightest.leaving(last);
-        let least = total.quick_enclosure();
+        let brightest = self.world.brightest.leaving(last, self.limits.max_rays);
+        // After some mirrors the first enclosure may be too wide to say anything, and no ray would be faint.
+        let least = total.enclosure();
         let least = (least.value - least.error * Bounded::GROW) * two_to(self.scene.camera.scale);
         let weight = [weight.x, weight.y, weight.z].map(|w| {
             let Bounded { value, error } = w.quick_enclosure();

@@ -26,6 +26,9 @@ struct Top {
     /// The surface that all objects lie on for which that is so, if it is one.
     group: Option<u32>,
     second: f64,
+    /// Where rays lose nothing, so that these are infinite: what each mirror or pane of a path may add to that of the
+    /// last.
+    each: Option<f64>,
 }
 
 /// Objects of the same material.
@@ -45,6 +48,12 @@ const WHEEL: f64 = 12.0;
 const SLACK: f64 = 1.0 + 1e-9;
 /// Steps towards the least X, for all materials together.
 const MOST_STEPS: usize = 1_000_000;
+/// Two surfaces one after another lose nothing if they leave no more than this of a weight: 1, and its roundings.
+const LOSSLESS: f64 = 1.0 + 1e-8;
+/// So many mirrors and panes of a path may be lossless, and what all their gains are then at most: more than
+/// LOSSLESS^(2²³).
+const MOST_LOSSLESS: u32 = 1 << 24;
+const LOSSLESS_GROWTH: f64 = 1.1;
 
 impl Brightest {
     /// For the objects of a lit scene.
@@ -68,10 +77,13 @@ impl Brightest {
         }
     }
 
-    /// The bound for a ray that leaves a surface of this group.
-    pub fn leaving(&self, last: Option<u32>) -> [f64; 3] {
-        self.channels.map(|top| match top.group {
-            Some(group) if Some(group) == last => top.second,
+    /// The bound for a ray that leaves a surface of this group, and goes by so many mirrors and panes at most.
+    pub fn leaving(&self, last: Option<u32>, longest: u32) -> [f64; 3] {
+        self.channels.map(|top| match (top.each, top.group) {
+            (Some(each), _) if longest <= MOST_LOSSLESS => {
+                times(each, LOSSLESS_GROWTH * (f64::from(longest) + 2.0))
+            }
+            (None, Some(group)) if Some(group) == last => top.second,
             _ => top.most,
         })
     }
@@ -220,8 +232,10 @@ fn top(all: &[Stuff], channel: usize) -> Top {
         }
     }
     let holds = |(x, least): (&f64, &f64)| *x >= *least * SLACK;
+    let mut each = None;
     if !x.iter().zip(&least(&x)).all(holds) {
         x.fill(f64::INFINITY);
+        each = lossless(all, channel);
     }
     let (most, first) = largest(&x);
     let group = all.get(first).and_then(|stuff| stuff.group);
@@ -230,7 +244,25 @@ fn top(all: &[Stuff], channel: usize) -> Top {
         most,
         group,
         second,
+        each,
     }
+}
+
+/// What every second mirror or pane of a path may add where two, one after the other, leave no more of a weight than
+/// there was, halved.
+fn lossless(all: &[Stuff], channel: usize) -> Option<f64> {
+    let gains: Vec<f64> = all.iter().map(|stuff| stuff.gain[channel]).collect();
+    let two = all
+        .iter()
+        .zip(others(all, &gains))
+        .map(|(stuff, others)| times(stuff.gain[channel], others));
+    let own = all
+        .iter()
+        .map(|stuff| stuff.own[channel])
+        .fold(0.0, f64::max);
+    let most = gains.iter().copied().fold(0.0, f64::max);
+    let lossless = two.fold(0.0, f64::max) <= LOSSLESS;
+    lossless.then(|| 0.5 * times(own, 1.0 + most) * SLACK)
 }
 
 /// For each material the most of the others: of itself too, if there are other surfaces of it.
@@ -273,8 +305,8 @@ mod tests {
         let scene = load_from("test", text.as_bytes(), Path::new(".")).unwrap();
         let world = Prepared::<Bounded>::new(&scene, 0.0).world.unwrap();
         let top = world.brightest.channels[0];
-        let from_top = world.brightest.leaving(top.group);
-        [world.brightest.leaving(None)[0], from_top[0]]
+        let from_top = world.brightest.leaving(top.group, 1 << 16);
+        [world.brightest.leaving(None, 1 << 16)[0], from_top[0]]
     }
 
     fn near(is: f64, least: f64) {
@@ -304,15 +336,22 @@ mod tests {
     }
 
     #[test]
-    fn mirrors_that_lose_nothing_have_no_bound() {
-        let text = format!(
-            "material a {{ ambient 1 0 0 specular 1 }} material b {{ ambient 2 0 0 transparency 0.5 specular 0.5 }}
-             plane p {{ material a normal 0 1 0 point 0 -1 0 }} plane q {{ material b normal 0 -1 0 point 0 7 0 }} {DARK}"
-        );
-        assert_eq!(bounds(&text)[0], f64::INFINITY);
-        // One alone is not met twice in a row.
-        let text = text.replace("specular 1 }", "specular 0.9 }");
-        near(bounds(&text)[0], 20.0);
+    fn mirrors_that_lose_nothing_bring_as_much_each() {
+        let text = |specular: &str| {
+            format!(
+                "material a {{ ambient 1 0 0 specular {specular} }}
+                 material b {{ ambient 2 0 0 transparency 0.5 specular 0.5 }}
+                 plane p {{ material a normal 0 1 0 point 0 -1 0 }} plane q {{ material b normal 0 -1 0 point 0 7 0 }}
+                 {DARK}"
+            )
+        };
+        // b keeps half of its own light, 1, and so there are 2 of two in a row.
+        let [most, other] = bounds(&text("1"));
+        assert_eq!(most, other);
+        assert!((65_536.0..1.2 * 65_536.0).contains(&most), "{most}");
+        // One alone is not met twice in a row; but two that gain have no bound.
+        near(bounds(&text("0.9"))[0], 20.0);
+        assert_eq!(bounds(&text("1.001"))[0], f64::INFINITY);
     }
 
     #[test]

@@ -142,7 +142,7 @@ named! {
     /// Roundings of what a light brings.
     LIGHT_ROUNDINGS = 24.0, at least 9.5;
     /// Roundings that a pane adds to the light that it lets through.
-    PANE_ROUNDINGS = 4.0, at least 3.0;
+    PANE_ROUNDINGS = 4.0, at least 3.05;
     /// Roundings of the difference of two directions.
     HALF_ROUNDINGS = 2.0, at least 2.0;
     /// Shininess above this is left to the CPU.
@@ -163,12 +163,14 @@ named! {
     MIRROR_TURN = 4.04, at least 4.004;
     /// How much a mirror whose normal is off stretches what a direction is off by.
     MIRROR_STRETCH = 5.0, at least 4.004;
-    /// Roundings of the bound of a ray's line, at each mirror and pane.
+    /// Roundings of the bounds of a ray's line and of its path's length, at each mirror and pane.
     LINE_ROUNDINGS = 4.0, at least 4.0;
     /// Roundings that a mirror adds to a branch's weight.
     WEIGHT_ROUNDINGS = 2.0, at least 1.5;
     /// Roundings that a pane adds to it.
     PANE_WEIGHT_ROUNDINGS = 5.0, at least 3.0;
+    /// What a mirror or pane adds to the bound of a weight, for a unit of it: its own roundings, and those of the bound.
+    WEIGHT_GROWTH = 6.0, at least 6.0;
     /// Roundings of what is left of the longest path.
     PATH_ROUNDINGS = 2.0, at least 1.5;
     /// Roundings of a mirrored direction.

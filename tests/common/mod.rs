@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "every test uses a part")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+pub(crate) mod drivers;
+
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;

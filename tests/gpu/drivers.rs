@@ -3,43 +3,15 @@
 //! a byte that depends on how a driver rounds or rewrites has to differ. Fails without a second driver.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use crate::common;
+use crate::common::drivers::{plumb, second_driver};
 
 /// Size of the pictures: the second driver is not the quickest.
 const SIZE: &str = "96x72";
 
 /// Scenes that are left out: one is an error, and the others keep a driver that is a single CPU busy for long.
 const LEFT_OUT: [&str; 2] = ["lit_half_mirrors_three", "lit_thousand_panes"];
-
-fn second_driver() -> PathBuf {
-    let Some(named) = std::env::var_os("PLUMB_SECOND_DRIVER") else {
-        panic!(
-            "there is no second driver: `sh scripts/test.sh --test gpu drivers` fetches one; or name the JSON file of another \
-             Vulkan driver in PLUMB_SECOND_DRIVER"
-        )
-    };
-    let path = PathBuf::from(named);
-    assert!(path.is_file(), "no file {}", path.display());
-    path
-}
-
-/// Runs the program, on the second driver if there is one given.
-fn plumb(args: &[&str], driver: Option<&Path>) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_plumb"));
-    command.args(args).env(
-        "XDG_CACHE_HOME",
-        concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
-    );
-    if let Some(driver) = driver {
-        command.env("VK_DRIVER_FILES", driver);
-    }
-    let output = command.output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{args:?}: {stderr}");
-    output
-}
 
 /// The picture from the GPU as PPM, and its report.
 fn picture(scene: &Path, samples: &str, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) {

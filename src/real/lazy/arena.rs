@@ -77,6 +77,8 @@ pub(super) struct Arena {
     pub(super) exact_made: usize,
     /// Words of balls computed since then.
     pub(super) words: usize,
+    /// Words of balls, and products of words for exact numbers, since the thread began.
+    pub(super) work: u64,
 }
 
 /// More nodes than this, 200 MB of them, are not made.

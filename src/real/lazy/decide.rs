@@ -29,6 +29,10 @@ const LARGEST: usize = 1 << 20;
 const MOST_WORDS: usize = 1 << 26;
 /// Expressions larger than this, or with more roots, are not tried exactly at once.
 const SMALL: usize = 400;
+/// Products of words that an exact number may take: at once, which is about as much as computing it in balls, and where
+/// balls do not decide, some hundredths of a second.
+const FEW_PRODUCTS: usize = 1 << 14;
+const MOST_PRODUCTS: usize = 1 << 23;
 /// So many exact numbers are made for a pixel: about a second. Then bits alone decide, and ties are presumed.
 const MOST_EXACT: usize = 100_000;
 const SMALL_ROOTS: usize = 6;
@@ -70,19 +74,23 @@ impl Arena {
             return Err(Undecided);
         }
         let (nodes, roots) = self.size(x);
-        if nodes <= SMALL
-            && roots <= SMALL_ROOTS
-            && let Ok(value) = self.exact(x, FEW_ROOTS)
-        {
-            return self.settle(x, &value);
+        let mut long = false;
+        if nodes <= SMALL && roots <= SMALL_ROOTS {
+            match self.exact(x, FEW_ROOTS, FEW_PRODUCTS) {
+                Ok(value) => return self.settle(x, &value),
+                Err(fault) => long = fault == TooHard::Size,
+            }
         }
+        // What 128 bits leave open is a tie almost always; but numbers that are long, as those of unlike sizes are,
+        // take exact arithmetic much longer than more bits, and these may well tell.
+        let before_exact = BITS[if long { BITS.len() - 1 } else { 0 }];
         let mut why = None;
         for bits in BITS {
             if let Some(sign) = self.ball(x, bits).and_then(|ball| ball.sign()) {
                 return Ok(sign);
             }
-            if bits == BITS[0] {
-                match self.exact(x, MOST_ROOTS) {
+            if bits == before_exact {
+                match self.exact(x, MOST_ROOTS, MOST_PRODUCTS) {
                     Ok(value) => return self.settle(x, &value),
                     Err(fault) => why = Some(fault),
                 }
@@ -121,7 +129,7 @@ impl Arena {
             self.set_zero(x);
             return Ok(Ordering::Equal);
         }
-        self.tower.begin();
+        self.tower.begin(MOST_PRODUCTS);
         match self.tower.sign(value) {
             Ok(sign) => Ok(sign),
             // It is not 0, so some precision tells its sign.
@@ -231,6 +239,7 @@ impl Arena {
                 continue;
             }
             self.words += bits / 64;
+            self.work += bits as u64 / 64;
             let ball = self.compute(i, bits);
             let node = &mut self.nodes[i as usize];
             if let Some(ball) = &ball {
@@ -301,6 +310,9 @@ impl Arena {
                 waiting.extend(operands(&node.op).into_iter().flatten());
             }
         }
+        // Of a large expression that is asked about often, looking takes as long as computing.
+        self.words += found.len() / 4;
+        self.work += found.len() as u64 / 4;
         found.sort_unstable();
         found
     }
@@ -323,18 +335,21 @@ impl Arena {
         (order.len(), roots)
     }
 
-    /// The exact number, with so many roots in the tower at most. If it takes more, and there are some that were
-    /// adjoined for other numbers, then once again without those.
-    fn exact(&mut self, x: Lazy, most: usize) -> Result<Element, TooHard> {
+    /// The exact number, with so many roots in the tower and so many products of words at most. If it takes more, and
+    /// there are roots that were adjoined for other numbers, then once again without those.
+    fn exact(&mut self, x: Lazy, most: usize, work: usize) -> Result<Element, TooHard> {
         let others = self.tower.height() > 0;
         let most_now = most.max(self.tower.height().min(MOST_ROOTS));
-        match self.try_exact(x.0, most_now) {
-            Err(TooHard::Roots | TooHard::Size) if others => {
-                self.new_tower();
-                self.try_exact(x.0, most)
-            }
-            result => result,
+        self.tower.begin(work);
+        let mut result = self.try_exact(x.0, most_now);
+        self.work += (work - self.tower.left()) as u64;
+        if others && matches!(result, Err(TooHard::Roots | TooHard::Size)) {
+            self.new_tower();
+            self.tower.begin(work);
+            result = self.try_exact(x.0, most);
+            self.work += (work - self.tower.left()) as u64;
         }
+        result
     }
 
     fn exactly(&self, i: u32) -> Option<&Element> {
@@ -343,7 +358,6 @@ impl Arena {
     }
 
     fn try_exact(&mut self, root: u32, most: usize) -> Result<Element, TooHard> {
-        self.tower.begin();
         let mut waiting = vec![root];
         while let Some(&i) = waiting.last() {
             if self.exactly(i).is_some() {
@@ -385,8 +399,15 @@ impl Arena {
         match &self.nodes[i as usize].op {
             Op::Number(value) => Ok(Element::Rational(ratio(*value))),
             Op::Ratio(value) => Ok(Element::Rational((**value).clone())),
-            Op::Add(a, b) => of(*a)?.add(of(*b)?),
-            Op::Sub(a, b) => of(*a)?.sub(of(*b)?),
+            Op::Add(a, b) | Op::Sub(a, b) => {
+                let (x, y) = (of(*a)?, of(*b)?);
+                self.tower.spend_sum(x, y)?;
+                if matches!(self.nodes[i as usize].op, Op::Add(..)) {
+                    x.add(y)
+                } else {
+                    x.sub(y)
+                }
+            }
             Op::Mul(a, b) => self.tower.mul(of(*a)?, of(*b)?),
             Op::Div(a, b) => self.tower.div(of(*a)?, of(*b)?),
             Op::Neg(a) => Ok(of(*a)?.neg()),

@@ -41,6 +41,11 @@ impl Lazy {
         })
     }
 
+    /// How much this thread has computed since it began: words of balls, and products of words for exact numbers.
+    pub fn work() -> u64 {
+        with(|arena| arena.work)
+    }
+
     /// Forgets all numbers of this thread.
     pub fn clear() {
         with(arena::Arena::clear);

@@ -49,12 +49,9 @@ type Exact = Result<Element, TooHard>;
 pub(super) struct Tower {
     /// What the roots are roots of.
     squares: Vec<Element>,
-    /// Products of words made since the last [`Tower::begin`].
-    spent: Cell<usize>,
+    /// Products of words that may still be made.
+    left: Cell<usize>,
 }
-
-/// Products of words that one number may take: some hundredths of a second on the machine this was written on.
-const MAX_WORK: usize = 1 << 23;
 
 /// Numerators and denominators beyond this are given up.
 const MAX_BITS: usize = 100_000;
@@ -144,9 +141,22 @@ impl Element {
 }
 
 impl Tower {
-    /// Begins a number: what was spent before does not count.
-    pub(super) fn begin(&self) {
-        self.spent.set(0);
+    /// Begins a number, which may take so many products of words.
+    pub(super) fn begin(&self, work: usize) {
+        self.left.set(work);
+    }
+
+    /// How many may still be made.
+    pub(super) fn left(&self) -> usize {
+        self.left.get()
+    }
+
+    /// Counts the sum of two numbers, which is made without the tower.
+    pub(super) fn spend_sum(&self, x: &Element, y: &Element) -> Result<(), TooHard> {
+        match (x, y) {
+            (Element::Rational(a), Element::Rational(b)) => self.spend(a, b),
+            _ => Ok(()),
+        }
     }
 
     fn spend(&self, a: &Ratio, b: &Ratio) -> Result<(), TooHard> {
@@ -158,11 +168,9 @@ impl Tower {
         } else {
             0
         };
-        self.spent.set(self.spent.get() + a * b + reducing);
-        if self.spent.get() > MAX_WORK {
-            return Err(TooHard::Size);
-        }
-        Ok(())
+        let left = self.left.get().checked_sub(a * b + reducing);
+        self.left.set(left.unwrap_or(0));
+        left.map(|_| ()).ok_or(TooHard::Size)
     }
 
     /// How many roots have been adjoined.

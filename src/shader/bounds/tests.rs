@@ -49,3 +49,58 @@ fn what_follows_the_first_order_is_within_the_bound() {
         assert!(left < 1.001 * terms * off);
     }
 }
+
+/// The f32 next below: as little as a faithful result may be.
+fn down(value: f64) -> f64 {
+    let near = value as f32;
+    f64::from(if f64::from(near) < value {
+        near
+    } else {
+        near.next_down()
+    })
+}
+
+/// What a weight may be off by after so many factors, each of which is off by `counted` roundings, over the bound that
+/// `shaders/branch.wgsl` computes for it, with all its own roundings downward.
+fn weight_over_bound(factors: u32, counted: f64, growth: f64) -> f64 {
+    let u = down(U);
+    let (grown, more) = (down(1.0 + growth * u), down(counted * u));
+    let (mut off, mut bound) = (1.0, 0.0);
+    for _ in 0..factors {
+        off *= (1.0 - ROUNDING).powf(-counted);
+        bound = down(down(grown * bound) + more);
+    }
+    (off - 1.0) / bound
+}
+
+#[test]
+fn the_bound_of_a_weight_holds_after_any_number_of_mirrors_and_panes() {
+    for counted in [1.5, 3.0] {
+        for factors in [1, 100, 10_000, 50_000] {
+            let worst = weight_over_bound(factors, counted, WEIGHT_GROWTH);
+            assert!((0.95..1.0).contains(&worst), "{factors}: {worst}");
+        }
+        assert!(weight_over_bound(10_000, counted, 0.0) > 1.0);
+    }
+}
+
+/// What a sum of many terms may be off by, each of which is known to a hundredth, over the bound that the shader
+/// computes for it, with all its own roundings downward; `own` of them count what the bound has so far, too.
+fn sum_over_bound(own: f64) -> f64 {
+    let (term, roundings) = (1.0 / 3.0, down(SUM_ROUNDINGS * U));
+    let (mut sum, mut off, mut bound) = (0.0, 0.0, 0.0);
+    for _ in 0..20_000 {
+        sum += term;
+        off += 0.01 * term + SUM_ROUNDINGS * ROUNDING * sum;
+        let added = down(0.01 * term * GROWTH) + down(roundings * down(sum + own * bound));
+        bound = down(bound + down(added));
+    }
+    off / bound
+}
+
+#[test]
+fn the_bound_of_a_sum_holds_for_any_number_of_terms() {
+    let worst = sum_over_bound(1.0);
+    assert!((0.95..1.0).contains(&worst), "{worst}");
+    assert!(sum_over_bound(0.0) > 1.0);
+}

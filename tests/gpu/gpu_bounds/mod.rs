@@ -204,6 +204,11 @@ fn weights_of_ordinary_size_are_followed() {
     weights::are_followed(&support::open(), &World::many().wgsl);
 }
 
+#[test]
+fn weights_of_long_paths_are_known() {
+    weights::are_known(&support::open(), &World::many());
+}
+
 /// Constants are no smaller than they have to be: at what they have to be at least, by their derivation, nothing is
 /// outside its bound.
 #[test]

@@ -36,6 +36,19 @@ fn past_a_sphere(rng: &mut Rng) -> [DVec3; 3] {
     [across * share * r, dir, DVec3::new(r, 1.0 / r, root)]
 }
 
+/// Two directions, and a cosine that is nearly theirs.
+fn in_a_cone(rng: &mut Rng) -> [DVec3; 3] {
+    let [a, b] = [rng.unit(), rng.unit()];
+    [a, b, alone(-a.dot(b) + rng.uniform(-0.1, 0.1))]
+}
+
+/// The longest path, and one of its size.
+fn nearly_a_path(rng: &mut Rng) -> [DVec3; 3] {
+    let longest = rng.log(-3.0, 3.0);
+    let path = longest * rng.uniform(0.0, 1.5);
+    [rng.unit(), rng.unit(), DVec3::new(longest, path, 0.0)]
+}
+
 fn alone(value: f64) -> DVec3 {
     DVec3::new(value, 0.0, 0.0)
 }
@@ -115,6 +128,52 @@ const COUNTED: &[Counted] = &[
         wgsl: "vec3f(dot(barrier(a - b), barrier(a - b)) * inverseSqrt(dot(barrier(a - b), barrier(a - b))), 0.0, 0.0)",
         operands: units,
         truth: |[a, b, _]| (alone((a - b).length()), (a - b).length()),
+    },
+    Counted {
+        constant: "HEIGHT_ROUNDINGS",
+        wgsl: "vec3f(c.x * c.y, 0.0, 0.0)",
+        operands: any,
+        truth: |[_, _, c]| (alone(c.x * c.y), c.x * c.y),
+    },
+    Counted {
+        // Without the sums in which it is compared: a difference has the sign of the exact one.
+        constant: "LIMIT_ROUNDINGS",
+        wgsl: "vec3f(dot(a, a) * inverseSqrt(max(dot(a, a), TINY_SQUARE)), 0.0, 0.0)",
+        operands: any,
+        truth: |[a, ..]| (alone(a.length()), a.length()),
+    },
+    Counted {
+        constant: "CONE_ROUNDINGS",
+        wgsl: "vec3f(-dot(a, b) - c.x, 0.0, 0.0)",
+        operands: in_a_cone,
+        truth: |[a, b, c]| (alone(-a.dot(b) - c.x), 1.0),
+    },
+    Counted {
+        constant: "PANE_ROUNDINGS",
+        wgsl: "c * (b * c.x)",
+        operands: any,
+        truth: |[_, b, c]| (c * (b * c.x), (c * (b * c.x)).length()),
+    },
+    Counted {
+        constant: "SHARE_ROUNDINGS",
+        wgsl: "a * (b * (c.x / c.y * c.z))",
+        operands: any,
+        truth: |[a, b, c]| {
+            let value = a * b * (c.x / c.y * c.z);
+            (value, value.length())
+        },
+    },
+    Counted {
+        constant: "PATH_ROUNDINGS",
+        wgsl: "vec3f(c.x - c.y, 0.0, 0.0)",
+        operands: nearly_a_path,
+        truth: |[_, _, c]| (alone(c.x - c.y), c.x),
+    },
+    Counted {
+        constant: "BOX_ROUNDINGS",
+        wgsl: "a - b",
+        operands: any,
+        truth: |[a, b, _]| (a - b, a.length() + b.length()),
     },
     Counted {
         constant: "MIRROR_ROUNDINGS",

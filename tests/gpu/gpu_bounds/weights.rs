@@ -1,8 +1,11 @@
-//! Which weights of rays are followed: at both ends of f32's range.
+//! Weights of rays: which are followed, at both ends of f32's range, and how well they are known after long paths.
 
+use glam::DVec3;
 use plumb::gpu::device::Gpu;
+use plumb::shader::records;
 
-use crate::gpu_bounds::support::run;
+use super::support::{BoundStatistics, Rng, rounded, run, with_constant};
+use super::world::World;
 
 /// The verdicts of `ordinary` on a product of two factors, as the shader forms it: 1 where it is followed.
 fn verdicts(gpu: &Gpu, wgsl: &str, factors: &[[f32; 2]]) -> Vec<bool> {
@@ -59,4 +62,95 @@ pub(crate) fn are_followed(gpu: &Gpu, wgsl: &str) {
             .zip(missed)
             .any(|((_, followed), verdict)| verdict != *followed)
     );
+}
+
+/// Mirrors, or panes, one behind another.
+const LONG: usize = 2_000;
+
+/// Weights after many mirrors or panes, each of which takes less than 10⁻⁵, and their bounds.
+fn after(gpu: &Gpu, world: &World, wgsl: &str, panes: bool) -> BoundStatistics {
+    let lit = world.packed.lit.as_ref().unwrap();
+    let is_pane =
+        |object: &&records::LitObject| lit.materials[object.material as usize].transparency > 0.0;
+    let object = lit
+        .objects
+        .iter()
+        .position(|object| is_pane(&object))
+        .unwrap();
+    let tint = lit.materials[lit.objects[object].material as usize].tint;
+    let mut rng = Rng(13);
+    let mut items = Vec::new();
+    let count = 4_096;
+    let truth: Vec<DVec3> = (0..count)
+        .map(|_| {
+            let (start, start_near) = rounded(rng.within(0.5) + DVec3::splat(1.5));
+            // What the host rounds.
+            let factor = DVec3::from_array([0; 3].map(|_| 1.0 - rng.log(-7.5, -5.0)));
+            let factor = if panes {
+                DVec3::splat(factor.x)
+            } else {
+                factor
+            };
+            let (told, _) = rounded(factor);
+            items.extend([
+                start[0], start[1], start[2], 0.0, told[0], told[1], told[2], 0.0,
+            ]);
+            let all = factor.to_array().map(|f| f.powi(LONG as i32));
+            start_near * DVec3::from_array(all)
+        })
+        .collect();
+    let step = if panes {
+        "through_branch(branch, at, items[2u * i + 1u].x)"
+    } else {
+        "mirror_branch(branch, at, items[2u * i + 1u].xyz)"
+    };
+    let body = format!(
+        "
+    var at: PathPoint;
+    at.point.object = {object}u;
+    var branch: Branch;
+    branch.weight = items[2u * i].xyz;
+    for (var k = 0u; k < {LONG}u; k += 1u) {{
+        branch = {step};
+    }}
+    answers[i] = vec4f(branch.weight, branch.weight_error);"
+    );
+    // What tints panes.
+    let inputs = [
+        (2, bytemuck::cast_slice(&lit.objects)),
+        (8, bytemuck::cast_slice(&world.packed.tiled_planes)),
+        (12, bytemuck::cast_slice(&lit.materials)),
+    ];
+    let inputs = if panes { &inputs[..] } else { &[] };
+    let answers = run(gpu, wgsl, &body, &items, inputs, count, 1);
+    let name = if panes {
+        "weights after panes"
+    } else {
+        "weights after mirrors"
+    };
+    let mut seen = BoundStatistics::new(name);
+    for (answer, truth) in answers.iter().zip(truth) {
+        let [x, y, z, error] = answer.map(f64::from);
+        for (found, truth, tint) in [
+            (x, truth.x, tint[0]),
+            (y, truth.y, tint[1]),
+            (z, truth.z, tint[2]),
+        ] {
+            // Panes tint but for one channel.
+            if !panes || tint == 1.0 {
+                seen.error((truth / found - 1.0).abs(), error);
+            }
+        }
+    }
+    seen
+}
+
+/// Along a path of two thousand mirrors or panes the weight is as well known as its bound says.
+pub(crate) fn are_known(gpu: &Gpu, world: &World) {
+    for (panes, constant) in [(false, "WEIGHT_ROUNDINGS"), (true, "PANE_WEIGHT_ROUNDINGS")] {
+        after(gpu, world, &world.wgsl, panes).judge(4_000, 1.0 / 12.0);
+        let without = with_constant(&world.wgsl, constant, "0f");
+        let violations = after(gpu, world, &without, panes).violations();
+        assert!(violations > 4_000, "{constant} = 0 is not noticed");
+    }
 }

@@ -159,3 +159,17 @@ fn powers_are_told_from_one() {
         certified(&text, &cpu());
     }
 }
+
+/// A pane takes so little from a byte on its border that rays behind it have to be followed however faint they are.
+#[test]
+fn the_faintest_ray_may_decide_a_byte() {
+    let text = "camera c { pixeldim 7 5 worlddim 8 6 viewpoint 4 3 1 }
+                material m { ambient 1 0.5 2 diffuse 2 1 0.5 transparency 1e-300 }
+                material wall { ambient 2 1 9 diffuse 1e3 4 1 }
+                plane p { material m normal 0 0 1 point 0 0 -1 }
+                plane w { material wall normal 0.1 0.2 1 point 0 0 -9 }
+                light l { location 3 4 -1.5 emissivity 3 3 2 }";
+    let mut settings = cpu();
+    settings.limits.max_path = 12.0;
+    certified(text, &settings);
+}

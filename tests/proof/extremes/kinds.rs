@@ -50,19 +50,41 @@ pub(super) const EXPONENTS: [i32; 24] = [
     12, 20, 38, 60, 150, 154, 300,
 ];
 
+/// The same around the ends of what the GPU's records hold, 2^±40, so that it renders most of these scenes itself.
+const OF_RECORDS: [i32; 12] = [-12, -11, -10, -9, -7, -4, -2, 3, 6, 9, 11, 12];
+
+/// Of what is multiplied along a path, and may not come to too much.
+const OF_FACTORS: [i32; 9] = [-12, -11, -10, -9, -7, -4, -2, 1, 3];
+
+/// The exponents of a scene's numbers: those of every second scene leave it to the GPU.
+pub(super) fn exponents(number: u64) -> &'static [i32] {
+    if for_the_gpu(number) {
+        &OF_RECORDS
+    } else {
+        &EXPONENTS
+    }
+}
+
+/// Whether the scene of this number is made such that f32 may hold it.
+pub(super) fn for_the_gpu(number: u64) -> bool {
+    number % 2 == 1
+}
+
 /// How numbers of a scene are written.
 struct Numbers {
     /// All lengths are of this power of ten.
     size: i32,
     /// Once in so many times, one of another.
     odd: u64,
+    /// Which others there are.
+    exponents: &'static [i32],
 }
 
 impl Numbers {
     fn length(&self, random: &mut Random, low: i32, high: i32) -> String {
         let number = random.place(low, high);
         if self.odd > 0 && random.once_in(self.odd) {
-            return any_size(random, number);
+            return any_size(random, number, self.exponents);
         }
         scaled(number, self.size)
     }
@@ -101,9 +123,9 @@ impl Numbers {
             let [a, b] = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
             return format!(
                 "{} {} {}",
-                any_size(random, a),
-                any_size(random, b),
-                scaled(1.0, random.one(&EXPONENTS))
+                any_size(random, a, self.exponents),
+                any_size(random, b, self.exponents),
+                scaled(1.0, random.one(self.exponents))
             );
         }
         random.one(&axes).to_owned()
@@ -121,12 +143,12 @@ pub(super) fn scaled(number: f64, exponent: i32) -> String {
     }
 }
 
-/// A number of some size, or 0.
-pub(super) fn any_size(random: &mut Random, number: f64) -> String {
+/// A number of one of these sizes, or 0.
+pub(super) fn any_size(random: &mut Random, number: f64, exponents: &[i32]) -> String {
     if random.once_in(8) {
         return "0".to_owned();
     }
-    scaled(number, random.one(&EXPONENTS))
+    scaled(number, random.one(exponents))
 }
 
 /// The scene of a kind and number.
@@ -139,28 +161,47 @@ pub(super) fn case(kind: SurfaceKind, number: u64) -> Case {
         course: false,
         max_path: 20.0,
     };
+    let exponents = exponents(number);
     match kind {
         SurfaceKind::Scaled => {
-            let size = random.one(&EXPONENTS).clamp(-300, 290);
-            case.text = things(random, &Numbers { size, odd: 0 }, size);
+            let size = random.one(exponents).clamp(-300, 290);
+            let numbers = Numbers {
+                size,
+                odd: 0,
+                exponents,
+            };
+            case.text = things(random, &numbers, size);
             case.max_path = 20.0 * 10_f64.powi(size);
         }
         SurfaceKind::Mixed => {
-            let size = random.one(&[0, 0, 0, -60, 60, -155, -300, 150]);
-            let odd = random.one(&[3, 6, 12, 25]);
-            case.text = things(random, &Numbers { size, odd }, size);
+            let size = if for_the_gpu(number) {
+                random.one(&[0, 0, 0, -6, 6])
+            } else {
+                random.one(&[0, 0, 0, -60, 60, -155, -300, 150])
+            };
+            let numbers = Numbers {
+                size,
+                odd: random.one(&[3, 6, 12, 25]),
+                exponents,
+            };
+            case.text = things(random, &numbers, size);
             case.max_path = 20.0 * 10_f64.powi(size);
         }
-        SurfaceKind::Chain => chain(random, &mut case),
+        SurfaceKind::Chain => chain(random, for_the_gpu(number), &mut case),
         SurfaceKind::Course => {
             case.samples = random.one(&[2, 3]);
             case.course = true;
             case.text = fine(random);
         }
-        SurfaceKind::Spots => case.text = spots(random),
-        SurfaceKind::Lanterns => case.text = lanterns(random),
+        SurfaceKind::Spots => case.text = spots(random, exponents),
+        SurfaceKind::Lanterns => case.text = lanterns(random, exponents),
         SurfaceKind::Stuff => {
-            case.text = stuff(random);
+            let exponents = if for_the_gpu(number) {
+                &OF_FACTORS
+            } else {
+                exponents
+            };
+            case.text = stuff(random, exponents);
             case.max_path = random.one(&[20.0, 40.0]);
         }
     }
@@ -242,17 +283,26 @@ fn things(random: &mut Random, numbers: &Numbers, size: i32) -> String {
 }
 
 /// Mirrors and panes one behind another.
-fn chain(random: &mut Random, case: &mut Case) {
-    let gap = random.one(&[1.0, 2.5, 0.25, 1e-3, 1e-9, 1e-20, 1e-100, 1e-300]);
-    let specular = random.one(&["0", "0.5", "1e-3", "1e-20", "1e-200", "0.5 1e-30 1", "1e12"]);
-    // Of thousands of bounces each has its price in exact numbers, where something behind them all is tied.
-    let (transparency, axis) = if gap < 0.1 {
-        let transparency = random.one(&["0", "0.5", "1e-3", "1e-30"]);
-        (transparency, random.one(&["0 0 1", "0 1 0"]))
+fn chain(random: &mut Random, for_the_gpu: bool, case: &mut Case) {
+    let (gaps, speculars, transparencies, lights) = if for_the_gpu {
+        (
+            [1.0, 2.5, 0.97, 0.25, 0.1, 1e-2, 1e-3, 1e-5],
+            ["0", "0.5", "1e-3", "1e-9", "0.125", "0.5 1e-11 1", "1e9"],
+            ["0", "0.5", "1e-3", "1e-9", "0.875", "1"],
+            ["3", "1e6", "1e-6", "1e-11"],
+        )
     } else {
-        let transparency = random.one(&["0", "0.5", "1e-3", "1e-30", "1e-300", "1"]);
-        (transparency, random.one(&["0 0 1", "0 1 0", "1 0 0.25"]))
+        (
+            [1.0, 2.5, 0.25, 1e-3, 1e-9, 1e-20, 1e-100, 1e-300],
+            ["0", "0.5", "1e-3", "1e-20", "1e-200", "0.5 1e-30 1", "1e12"],
+            ["0", "0.5", "1e-3", "1e-30", "1e-300", "1"],
+            ["3", "1e12", "1e-12", "1e200"],
+        )
     };
+    let gap = random.one(&gaps);
+    let specular = random.one(&speculars);
+    let transparency = random.one(&transparencies);
+    let axis = random.one(&["0 0 1", "0 1 0", "1 0 0.25"]);
     let mut text = camera(random, 0);
     writeln!(
         text,
@@ -281,7 +331,7 @@ fn chain(random: &mut Random, case: &mut Case) {
         writeln!(text, "plane p {{ material m normal {axis} point {at} }}").unwrap();
     }
     text += "plane w { material wall normal 0.1 0.2 1 point 0 0 -9 }\n";
-    let bright = random.one(&["3", "1e12", "1e-12", "1e200"]);
+    let bright = random.one(&lights);
     writeln!(
         text,
         "light l {{ location 3 4 {} emissivity {bright} {bright} 2 }}",

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use super::chance::Random;
-use super::kinds::{EXPONENTS, any_size, camera, scaled};
+use super::kinds::{any_size, camera, scaled};
 
 /// Spotlights that light hardly anything, or hardly anything not.
-pub(super) fn spots(random: &mut Random) -> String {
+pub(super) fn spots(random: &mut Random, exponents: &[i32]) -> String {
     let mut text = camera(random, 0);
     text += "material a { ambient 1 1 1 diffuse 4 5 6 }\n";
     let normal = random.one(&["0 0 1", "0 1 1", "1 0 2"]);
@@ -26,7 +26,7 @@ pub(super) fn spots(random: &mut Random) -> String {
     for _ in 0..1 + random.below(2) {
         let theta = match random.below(5) {
             0 => format!("{:?}", random.one(&[1e-3, 0.046875, 0.75, 1e-8, 3e-17])),
-            1 => scaled(random.between(1.0, 9.0), random.one(&EXPONENTS).min(-12)),
+            1 => scaled(random.between(1.0, 9.0), random.one(exponents).min(-9)),
             2 => format!("{:?}", 180.0 - random.one(&[1e-3, 1e-8, 1e-12, 3e-14, 0.0])),
             3 => format!(
                 "{:?}",
@@ -46,7 +46,7 @@ pub(super) fn spots(random: &mut Random) -> String {
 }
 
 /// Projectors whose pictures are as small or large, as near or far, as numbers are.
-pub(super) fn lanterns(random: &mut Random) -> String {
+pub(super) fn lanterns(random: &mut Random, exponents: &[i32]) -> String {
     let mut text = camera(random, 0);
     text += "texture t { filename textures/texels.ppm }
              material a { ambient 1 1 1 diffuse 4 5 6 specular 0.5 shininess 3 }\n";
@@ -60,7 +60,7 @@ pub(super) fn lanterns(random: &mut Random) -> String {
             let c = middle.map(|near| {
                 let number = near + random.one(&[0.0, 0.0, 0.5, -0.25]);
                 match random.below(odd) {
-                    0 => any_size(random, number),
+                    0 => any_size(random, number, exponents),
                     // Next to the middle, by far less than f64 tells beside it.
                     1 => format!("{:?}", number + random.one(&[1e-9, -1e-15, 1e-300])),
                     _ => format!("{number:?}"),
@@ -77,7 +77,7 @@ pub(super) fn lanterns(random: &mut Random) -> String {
             ("1 0 1e-12", "0 3e-320 0"),
         ]);
         let mut side = || match random.below(3) {
-            0 => scaled(random.between(1.0, 9.0), random.one(&EXPONENTS)),
+            0 => scaled(random.between(1.0, 9.0), random.one(exponents)),
             _ => format!("{:?}", random.one(&[0.5, 2.0, 4.0, 30.0])),
         };
         let dimensions = [side(), side()].join(" ");
@@ -93,14 +93,14 @@ pub(super) fn lanterns(random: &mut Random) -> String {
 }
 
 /// Materials of any size.
-pub(super) fn stuff(random: &mut Random) -> String {
+pub(super) fn stuff(random: &mut Random, exponents: &[i32]) -> String {
     let mut text = camera(random, 0);
     for name in ["a", "b", "c"] {
         let colour = |random: &mut Random| {
             let c = [0; 3].map(|_| {
                 let number = random.between(0.1, 9.0);
                 if random.once_in(2) {
-                    any_size(random, number)
+                    any_size(random, number, exponents)
                 } else {
                     format!("{number:?}")
                 }
@@ -109,7 +109,7 @@ pub(super) fn stuff(random: &mut Random) -> String {
         };
         let share = match random.below(4) {
             0 => "0.5".to_owned(),
-            1 => scaled(random.between(1.0, 9.0), random.one(&EXPONENTS).min(-12)),
+            1 => scaled(random.between(1.0, 9.0), random.one(exponents).min(-9)),
             _ => "0".to_owned(),
         };
         let specular = if random.once_in(2) {
@@ -135,14 +135,14 @@ pub(super) fn stuff(random: &mut Random) -> String {
     )
     .unwrap();
     let number = random.between(0.1, 9.0);
-    let bright = any_size(random, number);
+    let bright = any_size(random, number, exponents);
     writeln!(
         text,
         "light l {{ location 2 5 -1 emissivity {bright} 3 1 }}"
     )
     .unwrap();
     if random.once_in(2) {
-        let bright = any_size(random, 1.0);
+        let bright = any_size(random, 1.0, exponents);
         writeln!(text, "light l {{ location 5 1 2 emissivity 1 {bright} 3 }}").unwrap();
     }
     text

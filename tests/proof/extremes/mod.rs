@@ -1,15 +1,17 @@
-//! Scenes of extreme numbers against the oracle, on the CPU: from the least subnormal to 10^300, mixed in one scene;
-//! chains of mirrors and panes, thin gaps, the course's jitter, spotlights near 0 and 180 degrees.
+//! Scenes of extreme numbers against the oracle, on the CPU and the GPU: from the least subnormal to 10^300, mixed in
+//! one scene; chains of mirrors and panes, thin gaps, the course's jitter, spotlights near 0 and 180 degrees.
 //!
-//! `faults` has one scene for each way in which such numbers once made a wrong byte; `random` makes thousands;
-//! `same` needs no oracle: what must not change a picture does not.
+//! `faults` has one scene for each way in which such numbers once made a wrong byte; `random` makes thousands, and
+//! `drivers` shows some to a second driver; `same` needs no oracle: what must not change a picture does not.
 mod chance;
+mod drivers;
 mod faults;
 mod kinds;
 mod lamps;
 mod random;
 mod same;
 mod trees;
+mod work;
 
 use crate::common;
 use plumb::render::{Backend, Settings, render};

@@ -2,17 +2,19 @@
 
 use plumb::cpu::light::Lit;
 use plumb::cpu::surface::Point;
-use plumb::cpu::trace::{Branch, Fault, Limits, TraceObserver, Unmet, ray_trace};
+use plumb::cpu::trace::{Branch, Fault, Limits, TraceObserver, Unmet, Unobserved, ray_trace};
 use plumb::prepare::Prepared;
 use plumb::real::{Bounded, V3};
+use plumb::render::{Backend, Settings};
 
 use super::{cpu, picture, scene};
+use crate::common;
 use crate::oracle::{self, Rules, differences};
 
 /// Rays followed, and rays that those stand for.
 #[derive(Default)]
-struct Followed {
-    rays: u64,
+pub(super) struct Followed {
+    pub(super) rays: u64,
     counted: u64,
 }
 
@@ -131,4 +133,54 @@ fn long_paths_in_narrow_gaps_end() {
     let traced = ray_trace(&prepared, &limits, 3.0, 2.5 + 1e-3, &mut followed);
     assert!(traced.is_ok());
     assert!((20..400).contains(&followed.rays), "{}", followed.rays);
+}
+
+/// Half mirrors before a part of the picture, whose rays are too many; the others have few.
+const TOO_MANY_RAYS: &str = "camera c { pixeldim 160 48 worlddim 8 6 viewpoint 4 3 6 }
+     material half { ambient 1 1 1 diffuse 3 3 3 specular 0.5 transparency 0.5 }
+     fplane a { material half normal 0 0 1 point 2.2 1.3 -1 xdir 1 0 0 dimensions 4 3 }
+     fplane b { material half normal 0 0 1 point 2.2 1.3 -1.25 xdir 1 0 0 dimensions 4 3 }
+     fplane c { material half normal 0 0 1 point 2.2 1.3 -1.5 xdir 1 0 0 dimensions 4 3 }
+     light l { location 4 3 4 emissivity 2 2 2 }";
+
+/// The complaint names the first of the pixels in the order of the picture, whoever finds which of them first.
+#[test]
+fn the_first_pixel_with_too_many_rays_is_named() {
+    let scene = scene(TOO_MANY_RAYS);
+    let prepared = Prepared::<Bounded>::new(&scene, 0.0);
+    let [width, height] = scene.camera.pixeldim;
+    let too_many = |x: u32, y: u32| {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let traced = ray_trace(&prepared, &Limits::default(), x, y, &mut Unobserved);
+        traced.err() == Some(Fault::TooManyRays)
+    };
+    let (x, y) = (0..height)
+        .rev()
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .find(|&(x, y)| too_many(x, y))
+        .unwrap();
+    assert!(
+        x > 0 && y < height - 1,
+        "the first pixel of all tells little"
+    );
+    let named = format!("pixel ({x}, {y}) needs more than 65536 rays");
+    for backend in [Backend::Cpu, Backend::Gpu] {
+        for (threads, band_rows) in [
+            (None, None),
+            (Some(1), None),
+            (Some(2), Some(9)),
+            (Some(4), Some(48)),
+        ] {
+            let settings = Settings {
+                threads,
+                band_rows,
+                ..common::on(backend)
+            };
+            let error = picture(&scene, &settings).unwrap_err();
+            assert!(
+                error.contains(&named),
+                "{backend:?}, {threads:?}, {band_rows:?}: {error}"
+            );
+        }
+    }
 }
