@@ -125,6 +125,20 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     }
 //#end
 //#end
+//#if projector
+    var passed: Passage;
+    if light.projector != 0u {
+//#if certified
+        passed = passage(projectors[light.projector - 1u], point.group, toward, distance, toward_error);
+        sure &= passed.sure;
+//#else
+        passed = passage(projectors[light.projector - 1u], point.group, toward);
+//#end
+        if !passed.passes {
+            return shade;
+        }
+    }
+//#end
 //#if certified
     let way = SecondaryRay(point.position, d, point.error, d_error, 0.0, point.size);
     let blocked = shadow(way, Range(point.group, bit, 0.0, distance, 0.0, distance_error));
@@ -135,7 +149,13 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     if !blocked.open {
         return shade;
     }
-    let full = diffuse * light.emissivity * blocked.transmittance * (inverse * CAMERA_UNIT);
+    var emissivity = light.emissivity;
+//#if projector
+    if light.projector != 0u {
+        emissivity *= passed_texel(projectors[light.projector - 1u], passed);
+    }
+//#end
+    let full = diffuse * emissivity * blocked.transmittance * (inverse * CAMERA_UNIT);
     shade.color = full * max(c, 0.0);
     shade.error = full //~
         * (c_error + max(c, 0.0) * (CLOSE * distance_error * inverse + (LIGHT_ROUNDINGS + blocked.roundings) * U)); //~
@@ -147,9 +167,13 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
         let half = barrier(d - seen.dir);
         let half_error = seen.dir_error + d_error + HALF_ROUNDINGS * U;
         let most = glint_power(half, half_error, point.normal, point.normal_error, material.shininess);
-        let glint = material.specular * light.emissivity * most.x;
+        let glint = material.specular * emissivity * most.x;
         shade.color += glint;
         shade.error += glint * most.y;
+//#if projector
+        // One product more, that with the texel.
+        shade.error += glint * U;
+//#end
 //#else
         let back = seen.base - point.position;
         let back_2 = dot(back, back);
@@ -157,7 +181,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
         let half_2 = dot(half, half);
         let cosine = dot(half, point.normal) * inverseSqrt(max(half_2, TINY_SQUARE));
         if cosine > 0.0 {
-            shade.color += material.specular * light.emissivity * pow(min(cosine, 1.0), material.shininess);
+            shade.color += material.specular * emissivity * pow(min(cosine, 1.0), material.shininess);
         }
 //#end
     }

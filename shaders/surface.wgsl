@@ -86,6 +86,9 @@ fn index_error(point: Point) -> f32 {
     return point.error + INDEX_ROUNDINGS * U * point.size;
 }
 
+//#end
+//#if sure_index
+
 // Leaves a doubt where an index is no farther from a whole number than its error.
 fn certain(margin: vec3f) {
     doubt |= !all(margin > vec3f(0.0));
@@ -182,6 +185,31 @@ fn pplane_from_point(at: PlanePoint) -> vec3f {
 //#end
 }
 //#end
+//#if texels
+//#if certified
+
+// How far indices of texels are from the next texels', less their errors. At the ends of a stretched picture indices
+// are clamped, and one beyond is as good as the last.
+fn texel_margin(size: vec2f, repeats: bool, index: vec2f, errors: vec2f) -> vec2f {
+    let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), repeats | any(size < vec2f(2.0)));
+    let lone = vec2f(select(0.0, 2.0, !repeats & (size.x < 2.0)), select(0.0, 2.0, !repeats & (size.y < 2.0)));
+    return abs(index - edge) - errors + lone;
+}
+//#end
+
+// The texel at an index, each channel byte/256, of the picture whose texels begin at `first`.
+fn texel_at(first: u32, columns: u32, size: vec2f, repeats: bool, index: vec2f) -> vec3f {
+    var p = floor3(vec3f(index, 0.5)).xy;
+    if repeats {
+        // The half keeps the quotient away from whole numbers, whatever its rounding.
+        p -= size * floor((p + 0.5) / size);
+    }
+    // The index may overshoot an edge by its error.
+    let place = vec2u(clamp(p, vec2f(0.0), size - 1.0));
+    let packed = texels[first + place.y * columns + place.x];
+    return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) * 0x1p-8f;
+}
+//#end
 //#if textured
 
 //#insert struct Texplane
@@ -192,13 +220,9 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
     var index = vec2f(dot(plane.row_0, position) - plane.origin_0, dot(plane.row_1, position) - plane.origin_1);
     index = barrier(vec3f(index, 0.0)).xy; //~
     let size = vec2f(plane.size);
+    let repeats = plane.repeats != 0u;
 //#if certified
-    // At the ends of a stretched picture indices are clamped, and one beyond is as good as the last.
-    let edge = select(clamp(round(index), vec2f(1.0), size - 1.0), round(index), (plane.repeats != 0u)
-        | any(size < vec2f(2.0)));
-    let lone = vec2f(select(0.0, 2.0, (plane.repeats == 0u) & (size.x < 2.0)),
-        select(0.0, 2.0, (plane.repeats == 0u) & (size.y < 2.0)));
-    var margin = abs(index - edge) - (plane.row_lengths * index_error(point) + plane.errors) + lone;
+    var margin = texel_margin(size, repeats, index, plane.row_lengths * index_error(point) + plane.errors);
 //#if tables
     if !all(margin > vec2f(0.0)) {
         let word = index_table(point);
@@ -209,15 +233,7 @@ fn texel(plane: Texplane, point: Point) -> vec3f {
 //#end
     certain(vec3f(margin, MOST_INDEX - max(abs(index.x), abs(index.y))));
 //#end
-    var p = floor3(vec3f(index, 0.5)).xy;
-    if plane.repeats != 0u {
-        // The half keeps the quotient away from whole numbers, whatever its rounding.
-        p -= size * floor((p + 0.5) / size);
-    }
-    // The index may overshoot an edge by its error.
-    let place = vec2u(clamp(p, vec2f(0.0), size - 1.0));
-    let packed = texels[plane.first + place.y * plane.size.x + place.x];
-    return vec3f(vec3u(packed, packed >> 8u, packed >> 16u) & vec3u(255u)) * 0x1p-8f;
+    return texel_at(plane.first, plane.size.x, size, repeats, index);
 }
 //#end
 //#if psphere

@@ -84,9 +84,9 @@ THE SCENE LANGUAGE
   images (specular), and what is seen through things (transparency).
 
   Types: camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane,
-  light, spotlight, texture, texplane. A material is defined before it is used;
-  there is one camera; everything else comes in any order. docs/SCENE.md has
-  every attribute with its limits, scenes/ has examples.
+  light, spotlight, projector, texture, texplane. A material is defined before it
+  is used; there is one camera; everything else comes in any order.
+  docs/SCENE.md has every attribute with its limits, scenes/ has examples.
 
 EXIT CODES
   0   done

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::bvh::at_most;
-use super::surface::{Point, getdiff, tile_material};
+use super::surface::{Point, getdiff, texel, tile_material};
 use super::world::{Range, SecondaryHit, Toward, hits_from};
 use crate::prepare::{Light, Prepared, World};
 use crate::real::rational::two_to;
@@ -18,6 +18,8 @@ pub enum Lit<R> {
     FacesAway,
     /// The point is outside its cone.
     OutsideCone,
+    /// It does not come to the point through its picture.
+    OutsidePicture,
     /// An object, by its index, keeps it off.
     Shadowed(usize),
     /// It lights the point.
@@ -73,17 +75,17 @@ pub fn light_term<R: Real>(
     if !in_cone(light, toward, d)? {
         return Ok(Lit::OutsideCone);
     }
+    let Some(emissivity) = emissivity(scene, world, number, point)? else {
+        return Ok(Lit::OutsidePicture);
+    };
     let transmittance = match shadow(scene, world, point, d, Toward { number, distance })? {
         Ok(transmittance) => transmittance,
         Err(blocker) => return Ok(Lit::Shadowed(blocker)),
     };
     // c/dist, with c the cosine.
     let falloff = (across / distance2).times(two_to(-scene.camera.scale));
-    let diffuse = getdiff(scene, point)?
-        .each(light.emissivity)
-        .each(transmittance)
-        * falloff;
-    let glint = glint(scene, light, point, normal, base, d)?;
+    let diffuse = getdiff(scene, point)?.each(emissivity).each(transmittance) * falloff;
+    let glint = glint(scene, emissivity, point, normal, base, d)?;
     Ok(Lit::Lit {
         diffuse,
         glint,
@@ -114,6 +116,43 @@ fn in_cone<R: Real>(light: &Light<R>, toward: V3<R>, d: V3<R>) -> Result<bool, U
     }
     let off = square / (toward.dot(toward) * (R::exact(1.0) + along));
     Ok((off - narrow).sign()? == Ordering::Less)
+}
+
+/// How bright light number `number` is for this point: a projector's picture is passed once. None where the segment to
+/// the point does not cross the picture.
+fn emissivity<R: Real>(
+    scene: &Prepared<R>,
+    world: &World<R>,
+    number: usize,
+    point: &Point<R>,
+) -> Result<Option<V3<R>>, Undecided> {
+    let light = &world.lights[number];
+    let Some(projector) = &light.projector else {
+        return Ok(Some(light.emissivity));
+    };
+    let Some(reach) = projector.reach else {
+        return Ok(None);
+    };
+    // A surface in the picture's plane is met where the segment ends, all over: no digits tell that.
+    if world.picture_planes[number] == world.groups[point.object] {
+        return Ok(None);
+    }
+    let beyond = projector.direction.dot(point.position) - projector.constant;
+    if !beyond.positive()? {
+        return Ok(None);
+    }
+    // f is reach over both; two numbers that are > 0 do not cancel.
+    let along = reach / (reach + beyond);
+    let crossing = light.location + (point.position - light.location) * along;
+    let rectangle = &projector.picture.rectangle;
+    let coordinates = rectangle.coordinates(crossing);
+    for (p, length) in coordinates.into_iter().zip(rectangle.dimensions) {
+        if !p.non_negative()? || !(length - p).non_negative()? {
+            return Ok(None);
+        }
+    }
+    let texel = texel(scene, &projector.picture, crossing)?;
+    Ok(Some(light.emissivity.each(texel)))
 }
 
 /// The transmittance from the point to the light along `d`, or the object that keeps it off.
@@ -218,7 +257,7 @@ fn one_at_a_place<R: Real>(
 /// The glint: specular ∘ E · (h·N)ⁿ, h the unit vector halfway between the ways back and to the light.
 fn glint<R: Real>(
     scene: &Prepared<R>,
-    light: &Light<R>,
+    emissivity: V3<R>,
     point: &Point<R>,
     normal: V3<R>,
     base: V3<R>,
@@ -235,5 +274,5 @@ fn glint<R: Real>(
         return Ok(zero);
     }
     let cosine = along / half.dot(half).sqrt();
-    Ok(material.specular.each(light.emissivity) * cosine.pow(material.shininess))
+    Ok(material.specular.each(emissivity) * cosine.pow(material.shininess))
 }

@@ -97,7 +97,7 @@ fn tplane_odd<R: Real>(tiled: &Tiled<R>, position: V3<R>) -> Result<usize, Undec
     ))
 }
 
-/// Column and row of the texel at a point of a `texplane`, from the bottom left.
+/// Column and row of the texel at a point of a rectangle with a picture, from the bottom left.
 pub fn texel_place<R: Real>(
     textured: &Textured<R>,
     position: V3<R>,
@@ -116,8 +116,8 @@ pub fn texel_place<R: Real>(
     Ok(place)
 }
 
-/// The texel at a point of a `texplane`, each channel byte/256.
-fn texel<R: Real>(
+/// The texel at a point of a rectangle with a picture, each channel byte/256.
+pub(super) fn texel<R: Real>(
     scene: &Prepared<R>,
     textured: &Textured<R>,
     position: V3<R>,

@@ -15,7 +15,7 @@ pub enum Target {
     Material(usize, Reflectivity),
     /// A measure of the object of this index, which is a sphere or psphere.
     Sphere(usize, Measure),
-    /// The emissivity of the light or spotlight of this index: r g b, each ≥ 0.
+    /// The emissivity of the light, spotlight or projector of this index: r g b, each ≥ 0.
     Light(usize),
 }
 

@@ -8,11 +8,12 @@ use glam::DVec3;
 use super::quadric::Equation;
 use super::triangle::exact_normal;
 use crate::real::rational::{Ratio, dot, is_zero, ratio3};
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Beam, Light, Object, ProjectorPicture, Scene, Shape};
 
 /// For each object the number of the surface that it is or is part of: the same for the same set of points. Where equal
-/// spheres need not be told, spheres have none in common.
-pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
+/// spheres need not be told, spheres have none in common. Then for each light the number of the plane of its picture;
+/// one that no object has, if it has none.
+pub fn groups(scene: &Scene, equal_spheres: bool) -> (Vec<u32>, Vec<u32>) {
     let mut groups = Groups::default();
     let of = |object: &Object| match object.shape {
         Shape::Sphere { .. } if !equal_spheres => groups.one_more(),
@@ -20,7 +21,14 @@ pub fn groups(scene: &Scene, equal_spheres: bool) -> Vec<u32> {
             groups.of(&object.shape)
         }
     };
-    scene.objects.iter().map(of).collect()
+    let objects = scene.objects.iter().map(of).collect();
+    let picture = |light: &Light| match light.beam {
+        Beam::Picture(ProjectorPicture { normal, point, .. }) => {
+            groups.plane(carrier(&ratio3(normal), point))
+        }
+        Beam::Everywhere | Beam::Cone(_) => u32::MAX,
+    };
+    (objects, scene.lights.iter().map(picture).collect())
 }
 
 /// Numbers for surfaces, the same for the same point set.

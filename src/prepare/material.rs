@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::projector::Projector;
 use crate::real::rational::{exponent, two_to};
 use crate::real::{Real, V3};
 use crate::scene;
@@ -67,7 +68,7 @@ impl<R: Real> Material<R> {
 }
 
 /// A light.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Light<R> {
     /// From the viewpoint, in units of 2^scale.
     pub location: V3<R>,
@@ -77,20 +78,26 @@ pub struct Light<R> {
     pub cone: Option<(V3<R>, R)>,
     /// 1 − that cosine, of a cone so narrow that the difference from 1 is what counts.
     pub narrow: Option<R>,
+    /// What a projector throws.
+    pub projector: Option<Box<Projector<R>>>,
 }
 
 impl<R: Real> Light<R> {
     /// Prepares a light.
-    pub fn new(viewpoint: V3<R>, scale: i32, light: &scene::Light) -> Self {
+    pub fn new(scene: &scene::Scene, scale: i32, light: &scene::Light) -> Self {
         let scene::Light {
             name: _,
             location,
             emissivity,
             beam,
         } = *light;
-        let cone = match beam {
-            scene::Beam::Cone(cone) => Some(cone),
-            scene::Beam::Everywhere | scene::Beam::Picture(_) => None,
+        let (cone, projector) = match beam {
+            scene::Beam::Everywhere => (None, None),
+            scene::Beam::Cone(cone) => (Some(cone), None),
+            scene::Beam::Picture(picture) => {
+                let projector = Projector::new(scene, location, &picture);
+                (None, Some(Box::new(projector)))
+            }
         };
         let unit = R::exact(two_to(-scale));
         let at = location;
@@ -101,10 +108,11 @@ impl<R: Real> Light<R> {
             (axis.unit(), R::cos_degrees(theta))
         });
         Self {
-            location: (location - viewpoint) * unit,
+            location: (location - V3::exact(scene.camera.viewpoint)) * unit,
             emissivity: V3::exact(emissivity),
             cone,
             narrow,
+            projector,
         }
     }
 }

@@ -21,6 +21,7 @@ pub mod material;
 pub mod on_demand;
 pub mod plane;
 pub mod prepared;
+pub mod projector;
 pub mod quadric;
 pub mod screen_grid;
 pub mod sphere;

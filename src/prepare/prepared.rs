@@ -64,7 +64,8 @@ impl<R: Real> Prepared<R> {
         let lit = !scene.lights.is_empty();
         // Of many spheres the screen grid leaves out equal ones.
         let equal_spheres = lit || scene.objects.len() < screen_grid::WORTHWHILE;
-        let groups = Arc::new(groups(scene, equal_spheres));
+        let (groups, picture_planes) = groups(scene, equal_spheres);
+        let groups = Arc::new(groups);
         let hidden = hidden(scene, &groups, view.screen_tolerance);
         let mut prepared = Self::of(scene, view, true, &hidden);
         if scene.objects.len() >= screen_grid::WORTHWHILE {
@@ -88,8 +89,8 @@ impl<R: Real> Prepared<R> {
         prepared.is_plane = Arc::new(is_plane.collect());
         let quadrics = &prepared.quadrics;
         prepared.world = lit.then(|| {
-            let groups = Arc::clone(&groups);
-            World::new(scene, scale, tolerance, groups, &hidden, quadrics)
+            let planes = (Arc::clone(&groups), Arc::new(picture_planes));
+            World::new(scene, scale, tolerance, planes, &hidden, quadrics)
         });
         prepared.groups = groups;
         prepared.hidden = Arc::new(hidden);

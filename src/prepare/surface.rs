@@ -207,7 +207,7 @@ impl<R: Real> Tiled<R> {
 }
 
 impl<R: Real> Textured<R> {
-    fn new(
+    pub(super) fn new(
         scene: &scene::Scene,
         rectangle: Rectangle<R>,
         texture: usize,

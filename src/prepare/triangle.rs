@@ -185,12 +185,12 @@ fn side_step<R: Real>(
     turned: bool,
     near: V3<R>,
 ) -> Option<Step> {
-    let may_be_zero = |number: R| {
+    let is_not_zero = |number: R| {
         let Bounded { value, error } = number.enclosure();
         // A NaN fails this comparison.
-        !(value.abs() > error * Bounded::GROW)
+        value.abs() > error * Bounded::GROW
     };
-    if !may_be_zero(near.x) && !may_be_zero(near.y) {
+    if is_not_zero(near.x) && is_not_zero(near.y) {
         return None;
     }
     let v = ratio3(camera.viewpoint);

@@ -45,6 +45,9 @@ pub struct World<R> {
     /// For each object: the number of the surface that it is or is part of. Objects on the same plane share it, and
     /// equal spheres: from one of them the other is at t = 0, a miss.
     pub groups: Arc<Vec<u32>>,
+    /// For each light: the number of the plane of its picture, on which it brings nothing; one that no object has, if
+    /// it has none.
+    pub picture_planes: Arc<Vec<u32>>,
     /// For each object that a ray can hit: its place in `planes`, `quadrics` or `spheres`.
     pub places: Arc<Vec<usize>>,
     /// The rule H.z ≤ τ for positions.
@@ -59,7 +62,7 @@ impl<R: Real> World<R> {
         scene: &Scene,
         scale: i32,
         screen_tolerance: f64,
-        groups: Arc<Vec<u32>>,
+        (groups, picture_planes): (Arc<Vec<u32>>, Arc<Vec<u32>>),
         hidden: &[bool],
         quadrics: &Arc<Vec<Quadric<R>>>,
     ) -> Self {
@@ -89,6 +92,7 @@ impl<R: Real> World<R> {
             places[sphere.object] = place;
         }
         world.places = Arc::new(places);
+        world.picture_planes = picture_planes;
         world.brightest = Arc::new(Brightest::new(scene, &world, scale, hidden));
         world
     }
@@ -110,6 +114,7 @@ impl<R: Real> World<R> {
             triangle_tree: before.triangle_tree.clone(),
             on_demand: on_demand.cloned(),
             brightest: Arc::clone(&before.brightest),
+            picture_planes: Arc::clone(&before.picture_planes),
             ..Self::of(
                 scene,
                 scale,
@@ -148,9 +153,10 @@ impl<R: Real> World<R> {
             lights: scene
                 .lights
                 .iter()
-                .map(|light| Light::new(view, scale, light))
+                .map(|light| Light::new(scene, scale, light))
                 .collect(),
             groups,
+            picture_planes: Arc::default(),
             places,
             highest: R::ratio(
                 &((ratio(screen_tolerance) - ratio(scene.camera.viewpoint.z))

@@ -63,6 +63,7 @@ struct LightCounts {
     at_light: usize,
     faces_away: usize,
     outside: usize,
+    outside_picture: usize,
     shadowed: usize,
 }
 
@@ -279,6 +280,7 @@ impl TraceObserver<f64> for Tree<'_> {
                 Lit::AtLight => &mut counts.at_light,
                 Lit::FacesAway => &mut counts.faces_away,
                 Lit::OutsideCone => &mut counts.outside,
+                Lit::OutsidePicture => &mut counts.outside_picture,
                 Lit::Shadowed(_) => &mut counts.shadowed,
                 Lit::Lit { .. } => &mut counts.lit,
             } += 1;
@@ -289,6 +291,7 @@ impl TraceObserver<f64> for Tree<'_> {
             Lit::AtLight => "nothing: the light is at this very point".to_owned(),
             Lit::FacesAway => "nothing: the surface faces away from it".to_owned(),
             Lit::OutsideCone => "nothing: the point is outside its cone".to_owned(),
+            Lit::OutsidePicture => "nothing: the point is outside its picture".to_owned(),
             Lit::Shadowed(blocker) => {
                 let blocker = &self.scene.objects[*blocker];
                 format!("nothing: in the shadow of {}", blocker.name)
@@ -321,6 +324,7 @@ impl TraceObserver<f64> for Tree<'_> {
             at_light,
             faces_away,
             outside,
+            outside_picture,
             shadowed,
             ..
         } = self.lights;
@@ -329,6 +333,7 @@ impl TraceObserver<f64> for Tree<'_> {
             (at_light, "are at this very point"),
             (faces_away, "are faced away from"),
             (outside, "have it outside their cones"),
+            (outside_picture, "have it outside their pictures"),
             (shadowed, "are in the shadow of something"),
         ]
         .into_iter()

@@ -270,7 +270,7 @@ impl Draft {
         }
     }
 
-    fn set_texture(&mut self, texture: usize, mode: TextureMode) {
+    pub(super) fn set_texture(&mut self, texture: usize, mode: TextureMode) {
         self.texture = texture;
         self.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
     }

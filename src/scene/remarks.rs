@@ -6,8 +6,9 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
-use super::{Object, Scene, Surface};
+use super::{Beam, Light, Object, Scene, Surface};
 use crate::diagnostic::quote;
+use crate::real::rational::{dot, is_zero, ratio3, sub};
 
 /// Most names that a remark lists.
 const SHOWN: usize = 3;
@@ -40,6 +41,18 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
                 list(&names)
             ));
         }
+    }
+    let idle: Vec<&str> = scene
+        .lights
+        .iter()
+        .filter(|light| lights_nothing(light))
+        .map(|light| light.name.as_str())
+        .collect();
+    if !idle.is_empty() {
+        found.push(format!(
+            "no light of {} passes its picture: its location lies in the picture's plane",
+            list(&idle)
+        ));
     }
     for texture in &scene.textures {
         if let Some(odd) = &texture.remark {
@@ -76,6 +89,15 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
         }
     }
     found
+}
+
+/// Whether a projector's location lies in the plane of its own rectangle.
+fn lights_nothing(light: &Light) -> bool {
+    let Beam::Picture(picture) = light.beam else {
+        return false;
+    };
+    let way = sub(&ratio3(picture.point), &ratio3(light.location));
+    is_zero(&dot(&ratio3(picture.normal), &way))
 }
 
 /// `a`, `b` and others.
@@ -123,6 +145,26 @@ mod tests {
         assert_eq!(of(wall), told);
         let lit = format!("{wall} light l {{ location 0 0 0 emissivity 1 1 1 }}");
         assert_eq!(of(&lit), Vec::<String>::new());
+    }
+
+    #[test]
+    fn projectors_that_light_nothing_are_told() {
+        let of = |location: &str| {
+            let text = format!(
+                "camera c {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }}
+                 texture t {{ filename textures/texels.ppm }} material m {{ ambient 1 1 1 }}
+                 plane p {{ material m normal 0 0 1 point 0 0 -4 }}
+                 projector l {{ location {location} emissivity 1 1 1 normal 1 2 3 point 3 2 1 xdir 1 0 0
+                     dimensions 1 1 texname t mode 0 }}"
+            );
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+            remarks(&super::super::parse("test", text.as_bytes(), &folder).unwrap())
+        };
+        assert_eq!(of("0 0 3.333"), Vec::<String>::new());
+        assert_eq!(
+            of("1 3 1"),
+            ["no light of `l` passes its picture: its location lies in the picture's plane"]
+        );
     }
 
     #[test]

@@ -482,7 +482,7 @@ pub(super) static ENTITIES: [Entity; 17] = [
 ];
 
 /// Entity types of the language's later life that are known and not supported.
-pub(super) const UNSUPPORTED: &[&str] = &["revsurf", "projector"];
+pub(super) const UNSUPPORTED: &[&str] = &["revsurf"];
 
 /// The most rows that an entity has: see the test.
 pub(super) const MAX_ROWS: usize = 8;

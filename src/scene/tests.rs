@@ -72,6 +72,9 @@ fn everything() -> SceneBuilder {
     );
     scene.light("lamp", [0.0, 4.0, 0.0], DVec3::ONE);
     scene.spotlight("beam", [0.0, 4.0, 0.0], DVec3::ONE, [4.0, 0.0, -3.0], 15.0);
+    let (at, sides) = ([0.0, 4.0, 0.0], [1.0, 2.0]);
+    let mode = TextureMode::Fit;
+    scene.projector("lantern", at, DVec3::ONE, up, origin, x, sides, wood, mode);
     scene
 }
 
@@ -240,6 +243,16 @@ fn the_listing_shows_every_entity() {
             emissivity  1.0  1.0  1.0
             point       4.0  0.0  -3.0
             theta       15.0
+
+        projector       lantern
+            location    0.0  4.0  0.0
+            emissivity  1.0  1.0  1.0
+            normal      0.0  1.0  0.0
+            point       0.0  0.0  0.0
+            xdir        1.0  0.0  0.0
+            dimensions  1.0  2.0
+            texname     wood
+            mode        0
 
     "#]]
     .assert_eq(&listing(&scene));

@@ -184,7 +184,7 @@ bindings! {
     binding 10, "texplanes", READ, "array<Texplane>", "texplanes",
         |f| f.contains(&Feature::Textured), Some(|p| records(&p.texplanes));
     /// Red, green, blue from the lowest byte up; all textures one after the other, bottom rows first.
-    binding 11, "texels", READ, "array<u32>", "texels", |f| f.contains(&Feature::Textured), Some(|p| words(&p.texels));
+    binding 11, "texels", READ, "array<u32>", "texels", |f| f.contains(&Feature::Texels), Some(|p| words(&p.texels));
     binding 12, "materials", READ, "array<Material>", "materials",
         |f| f.contains(&Feature::Lit), Some(|p| of_lit(p, |lit| &lit.materials));
     binding 13, "lights", READ, "array<Light>", "lights",
@@ -195,7 +195,9 @@ bindings! {
         |f| f.contains(&Feature::WorldPlanes), Some(|p| of_lit(p, |lit| &lit.planes));
     binding 15, "world_spheres", READ, "array<WorldSphere>", "spheres for all rays",
         |f| f.contains(&Feature::WorldSpheres), Some(|p| of_lit(p, |lit| &lit.spheres));
-    binding 17, "quadrics", READ, "array<Quadric>", "quadrics",
+    binding 17, "projectors", READ, "array<Projector>", "projectors",
+        |f| f.contains(&Feature::Projector), Some(|p| of_lit(p, |lit| &lit.projectors));
+    binding 18, "quadrics", READ, "array<Quadric>", "quadrics",
         |f| f.contains(&Feature::QuadricBuffer), Some(|p| records(&p.quadrics));
     /// The offsets of the samples in their pixels: those of a pixel together, pixels as in `pixels`.
     binding OFFSETS, "offsets", READ, "array<vec2f>", "offsets of samples", |f| f.contains(&Feature::Course), None;

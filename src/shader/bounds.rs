@@ -135,8 +135,12 @@ named! {
     LIMIT_ROUNDINGS = 11.0, at least 10.5;
     /// Roundings of how far a direction is inside of a cone.
     CONE_ROUNDINGS = 8.0, at least 6.0;
+    /// Roundings of how far a way goes along a projector's normal.
+    BEYOND_ROUNDINGS = 5.0, at least 3.5;
+    /// Roundings of where a way crosses a projector's picture, for a unit of its length.
+    PICTURE_ROUNDINGS = 10.0, at least 8.5;
     /// Roundings of what a light brings.
-    LIGHT_ROUNDINGS = 24.0, at least 8.5;
+    LIGHT_ROUNDINGS = 24.0, at least 9.5;
     /// Roundings that a pane adds to the light that it lets through.
     PANE_ROUNDINGS = 4.0, at least 3.0;
     /// Roundings of the difference of two directions.

@@ -48,7 +48,7 @@ macro_rules! file {
 }
 
 /// The files of every entry point, in their order.
-const FILES: [File; 15] = [
+const FILES: [File; 16] = [
     file!("bindings.wgsl", |_| true),
     file!("camera.wgsl", |_| true),
     file!("jitter.wgsl", |f| f.contains(&Feature::Samples)
@@ -67,6 +67,7 @@ const FILES: [File; 15] = [
     file!("world.wgsl", |f| f.contains(&Feature::Lit)),
     file!("glint.wgsl", |f| f.contains(&Feature::Glint)
         && f.contains(&Feature::Certified)),
+    file!("projector.wgsl", |f| f.contains(&Feature::Projector)),
     file!("light.wgsl", |f| f.contains(&Feature::Lit)),
     file!("quadric.wgsl", |f| f.contains(&Feature::Quadric)),
     file!("closest.wgsl", |f| f.contains(&Feature::AnyObject)),

@@ -83,6 +83,8 @@ features! {
     Tables = "tables",
     /// Indices of tiles, blocks or texels are certified.
     Index = "index",
+    /// Indices are certified: those, or those of texels that projectors throw.
+    SureIndex = "sure_index",
     /// A decision that the colour depends on may be in doubt.
     Doubtful = "doubtful",
     /// Objects do not come in the order of the file.
@@ -97,6 +99,8 @@ features! {
     Psphere = "psphere",
     /// There are rectangles with pictures.
     Textured = "textured",
+    /// There are pictures, on rectangles or projected.
+    Texels = "texels",
     /// Where something is hit matters.
     Position = "position",
     /// Where a sphere is hit, from its center, matters.
@@ -135,6 +139,8 @@ features! {
     Glint = "glint",
     /// There are spotlights.
     Cone = "cone",
+    /// There are projectors.
+    Projector = "projector",
     /// Some light lies in a plane or on a sphere.
     LightsOnSurface = "lights_on_surface",
     /// Some light is so near to a plane that its height above it is told.

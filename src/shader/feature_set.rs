@@ -69,6 +69,8 @@ pub struct LitFeatures {
     pub glint: bool,
     /// Some light is a spotlight.
     pub cone: bool,
+    /// Some light is a projector.
+    pub projectors: bool,
     /// Some light lies in a plane or on a sphere.
     pub lights_on_surface: bool,
     /// Some light is next to a plane.
@@ -158,6 +160,7 @@ impl FeatureSet {
                 transparent: lit.transparent,
                 glint: lit.glint,
                 cone: lit.lights.iter().any(|light| light.cosine >= -1.0),
+                projectors: !lit.projectors.is_empty(),
                 lights_on_surface: lit.planes.iter().any(|plane| plane.lights_on_surface != 0)
                     || lit
                         .spheres
@@ -324,6 +327,7 @@ impl<'a> Conditions<'a> {
             Feature::Groups => set.groups && certified,
             Feature::Tables => certified && set.tables,
             Feature::Index => certified && (tiled || textured || pplane),
+            Feature::SureIndex => certified && (tiled || textured || pplane || light.projectors),
             Feature::Doubtful => certified && (lit || tiled || textured || pplane || psphere),
             Feature::Mixed => {
                 let shapes = [set.planes, set.polygons, set.spheres, set.quadrics];
@@ -334,6 +338,7 @@ impl<'a> Conditions<'a> {
             Feature::Pplane => pplane,
             Feature::Psphere => psphere,
             Feature::Textured => textured,
+            Feature::Texels => textured || light.projectors,
             Feature::Position => lit || tiled || textured || pplane,
             Feature::FromCenter => psphere || light.spheres,
             Feature::Quad => any && set.quad,
@@ -355,6 +360,7 @@ impl<'a> Conditions<'a> {
             Feature::AnyHit => lit && !light.transparent,
             Feature::Glint => light.glint,
             Feature::Cone => light.cone,
+            Feature::Projector => light.projectors,
             Feature::LightsOnSurface => light.lights_on_surface,
             Feature::LowLight => light.low_light,
             Feature::SidesAnywhere => light.sides,
@@ -369,7 +375,7 @@ impl<'a> Conditions<'a> {
             Feature::PplaneOdd => self.asks("pplane_odd("),
             Feature::PplaneFromPoint => self.asks("pplane_from_point("),
             Feature::Odd => tiled || self.asks("pplane_odd("),
-            Feature::Whole => tiled || textured || self.asks("pplane_odd("),
+            Feature::Whole => tiled || textured || light.projectors || self.asks("pplane_odd("),
         }
     }
 

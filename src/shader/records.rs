@@ -278,6 +278,41 @@ records! {
         size: f32,
         /// A spotlight's axis.
         axis: [f32; 3],
+        /// Its place among the projectors, and 1; 0 for other lights.
+        projector: u32,
+    }
+
+    /// The picture of a projector; v is the way from its location to a point. The point is beyond the picture's plane
+    /// where normal·v > reach; the way crosses that plane at reach/(normal·v)·v, and texel column and row there are
+    /// floor(row_i·that + start_i).
+    Projector as "Projector" {
+        /// Perpendicular to the picture, away from the location; of unit length.
+        normal: [f32; 3],
+        /// Distance of the location from the picture's plane.
+        #[factor = "the share of a way up to the picture is a quotient of it"]
+        reach: f32,
+        /// Texels a unit along the first side, times its direction.
+        row_0: [f32; 3],
+        /// Column next to the location, with its fraction.
+        start_0: f32,
+        /// The same for the second side.
+        row_1: [f32; 3],
+        /// The same for the second side.
+        start_1: f32,
+        /// Texels along both sides.
+        ends: [f32; 2],
+        /// Columns and rows of the texture.
+        size: [u32; 2],
+        /// Lengths of the rows.
+        row_lengths: [f32; 2],
+        /// Bounds of the errors of column and row, but for what the way's error adds.
+        errors: [f32; 2],
+        /// The texture's first texel.
+        first: u32,
+        /// 1 where the picture repeats.
+        repeats: u32,
+        /// Number of the surface that the picture's plane is.
+        group: u32,
         /// Nothing.
         pad: Pad1,
     }

@@ -114,6 +114,7 @@ fn what_keeps_light_off_is_named() {
             .ends(0)
             .text()
     };
+    desk.write("t.ppm", "P6 1 1 255\nabc");
     // The ray runs from (1, 1, 2) along −z to the wall at (1, 1, −4).
     let wall = "camera c { pixeldim 3 3 worlddim 2 2 viewpoint 1 1 2 }
         material m { ambient 1 1 1 diffuse 1 1 1 } material g { transparency 0.25 specular 1 }
@@ -125,6 +126,9 @@ fn what_keeps_light_off_is_named() {
             light behind {{ location 1 1 -5 emissivity 1 1 1 }}
             light shaded {{ location 2 1 0 emissivity 1 1 1 }}
             spotlight aside {{ location 0 1 0 emissivity 1 1 1 point 0 1 -4 theta 1 }}
+            texture t {{ filename t.ppm }}
+            projector past {{ location 0 1 0 emissivity 1 1 1 normal 0 0 1 point 2 0 -1 xdir 1 0 0 dimensions 1 2
+                             texname t mode 0 }}
             light seen {{ location 1 1 0 emissivity 4 8 0 }}"
         ),
         &[],
@@ -134,6 +138,7 @@ fn what_keeps_light_off_is_named() {
         "behind  nothing: the surface faces away from it\n",
         "shaded  nothing: in the shadow of pea\n",
         "aside   nothing: the point is outside its cone\n",
+        "past    nothing: the point is outside its picture\n",
         "seen    diffuse (1, 2, 0)\n",
         "in all       1 ray: 1 met something, 0 found nothing\n",
     ] {

@@ -21,6 +21,8 @@ const BEYOND_F32: &[(&str, f64)] = &[
     ("lit_faint_panes", 0.3),
     // The height of a lamp 10⁻⁶ above a floor, as a difference of positions.
     ("lit_lamp_over_floor", 0.6),
+    // All light passes one picture within 10⁻⁸ of the corner of four texels.
+    ("lit_projector_grazing", 48.0),
     ("millimetres", 1.0),
     // A screen 10⁻⁶ high before a grazing plane: rows whose values miss a byte's border by 10⁻⁷.
     ("plane_grazing_extreme", 1.5),

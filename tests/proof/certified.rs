@@ -256,6 +256,9 @@ fn wrong_rules_are_noticed() {
         ("lit_mirrors_path_exactly_20", broken(Fault::PathEnds)),
         ("lit_painting_under_lamp", broken(Fault::OpenRectangle)),
         ("lit_shadow_edges", broken(Fault::OpenRectangle)),
+        ("lit_projector_tied", broken(Fault::OpenRectangle)),
+        ("lit_projector_tied", broken(Fault::PictureBehind)),
+        ("lit_projector_grazing", broken(Fault::GlintWithoutPicture)),
         ("lit_glint_grazing", broken(Fault::Rounds)),
         (
             "plane_z_at_tolerance",

@@ -15,7 +15,7 @@ use super::truth::{FirstObject, PixelHit};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::image::Picture;
-use crate::scene::{Beam, Light, Object, Scene, Shape};
+use crate::scene::{Object, Scene, Shape};
 use crate::settings::Settings;
 use crate::shader::literal::{literal, vector};
 use crate::shader::preprocess::{Directives, preprocess};
@@ -61,19 +61,13 @@ pub struct Rendered {
     pub kernel: f64,
 }
 
-/// The type of an object or light that textbooks of that time leave out, if the scene has one.
+/// The type of an object that textbooks of that time leave out, if the scene has one.
 fn later_entity(scene: &Scene) -> Option<&'static str> {
     let object = scene.objects.iter().find(|object| match object.shape {
         Shape::Triangle(_) | Shape::Quadric(_) => true,
         Shape::Plane { .. } | Shape::Sphere { .. } => false,
     });
-    let light = scene.lights.iter().find(|light| match light.beam {
-        Beam::Picture(_) => true,
-        Beam::Everywhere | Beam::Cone(_) => false,
-    });
-    object
-        .map(Object::entity)
-        .or_else(|| light.map(Light::entity))
+    object.map(Object::entity)
 }
 
 impl<'a> Textbook<'a> {

@@ -47,7 +47,7 @@ pub(super) struct Light {
     emissivity: [f32; 3],
     unused: u32,
     point: [f32; 3],
-    unused_1: u32,
+    picture: u32,
 }
 
 /// What `Object::surface` says; the shader has the same numbers.
@@ -100,7 +100,7 @@ impl Records {
             firsts,
         };
         Self {
-            objects: or_zero((0..scene.objects.len()).map(|i| pack.object(i)).collect()),
+            objects: pack.objects(),
             materials: or_zero(
                 scene
                     .materials
@@ -141,8 +141,16 @@ struct Frame {
 }
 
 impl Pack<'_> {
-    fn object(&self, index: usize) -> Object {
-        let object = &self.scene.objects[index];
+    /// All objects; behind them, and one more where there are none, the pictures of projectors.
+    fn objects(&self) -> Vec<Object> {
+        let objects = self.scene.objects.iter();
+        let mut records = or_zero(objects.map(|object| self.object(object)).collect());
+        let pictures = self.scene.lights.iter().filter_map(projected);
+        records.extend(pictures.map(|object| self.object(&object)));
+        records
+    }
+
+    fn object(&self, object: &scene::Object) -> Object {
         let mut record = Object {
             material: object.material as u32,
             altmaterial: object.material as u32,
@@ -286,6 +294,10 @@ impl Pack<'_> {
             theta: if self.prepared { -2.0 } else { 0.0 },
             ..Light::zeroed()
         };
+        if let scene::Beam::Picture(_) = beam {
+            let before = self.scene.lights[..index].iter().filter_map(projected);
+            record.picture = (self.scene.objects.len().max(1) + before.count()) as u32;
+        }
         if let scene::Beam::Cone(scene::Cone { point, theta }) = beam {
             if self.prepared {
                 record.theta = theta.to_radians().cos() as f32;
@@ -297,6 +309,30 @@ impl Pack<'_> {
         }
         record
     }
+}
+
+/// The picture of a projector, as a rectangle.
+fn projected(light: &scene::Light) -> Option<scene::Object> {
+    let scene::Beam::Picture(picture) = light.beam else {
+        return None;
+    };
+    let scene::ProjectorPicture {
+        normal,
+        point,
+        rectangle,
+        texture,
+        mode,
+    } = picture;
+    Some(scene::Object {
+        name: String::new(),
+        material: 0,
+        shape: Shape::Plane {
+            normal,
+            point,
+            extent: Extent::Rectangle(rectangle),
+        },
+        surface: Surface::Textured { texture, mode },
+    })
 }
 
 /// The two directions of a plane with this unit normal.

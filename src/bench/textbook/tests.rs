@@ -54,6 +54,7 @@ fn nearly_right_where_nothing_is_hard() {
         "lit/glass_balls.txt",
         "lit/spotlight_stage.txt",
         "lit/glint.txt",
+        "lit/magic_lantern.txt",
         "lit/fplanes_slanted.txt",
         "lit/tiles_xdir.txt",
         "lit/texture_repeated.txt",

@@ -68,7 +68,8 @@ struct Light {
     unused: u32,
     // Where a spotlight points to; prepared: its unit direction.
     point: vec3f,
-    unused_1: u32,
+    // The number of a projector's picture among the objects, behind all that rays meet; 0 for another light.
+    picture: u32,
 }
 
 @group(0) @binding(0) var<uniform> dispatch: Dispatch;
@@ -322,6 +323,18 @@ fn light_term(light: Light, number: u32, hit: vec3f, normal: vec3f, base: vec3f)
         return vec3f(0.0);
     }
 //#end
+    var emissivity = light.emissivity;
+    if light.picture != 0u {
+        let picture = objects[light.picture];
+        let way = hit - light.location;
+        let up_to = dot(picture.normal, picture.point - light.location) / dot(picture.normal, way);
+        let crossing = light.location + up_to * way;
+        let p = along(picture, crossing - picture.point);
+        if !(up_to > 0.0 && up_to < 1.0) || any(p < vec2f(0.0)) || any(p > picture.extent) {
+            return vec3f(0.0);
+        }
+        emissivity *= texel(picture, crossing);
+    }
     let share = shadow(hit, d, distance, number);
     if share.x < 0.0 {
         return vec3f(0.0);
@@ -331,12 +344,12 @@ fn light_term(light: Light, number: u32, hit: vec3f, normal: vec3f, base: vec3f)
     if objects[number].surface == TEXTURED {
         diffuse *= texel(objects[number], hit);
     }
-    var color = diffuse * light.emissivity * share * cosine / distance;
+    var color = diffuse * emissivity * share * cosine / distance;
     if material.shininess != 0.0 {
         let half = normalize(base - hit) + d;
         let along_half = dot(half, normal);
         if along_half > 0.0 {
-            color += material.specular * light.emissivity * pow(along_half / length(half), material.shininess);
+            color += material.specular * emissivity * pow(along_half / length(half), material.shininess);
         }
     }
     return color;

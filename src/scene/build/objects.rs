@@ -113,8 +113,7 @@ impl SceneBuilder {
         mode: TextureMode,
     ) -> &mut Self {
         let mut draft = finite(plane(name, material, normal, point), xdir, dimensions);
-        draft.texture = texture.0;
-        draft.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
+        draft.set_texture(texture.0, mode);
         self.add(EntityKind::Object(Class::Textured), draft)
     }
 
@@ -146,6 +145,31 @@ impl SceneBuilder {
             ..light(name, location, emissivity)
         };
         self.add(EntityKind::Light(LightClass::Spotlight), draft)
+    }
+
+    /// Adds a projector: a light that comes through the rectangle of a texplane alone, with its colours.
+    #[expect(clippy::too_many_arguments, reason = "one a line of the scene file")]
+    pub fn projector(
+        &mut self,
+        name: &str,
+        location: impl Into<DVec3>,
+        emissivity: impl Into<DVec3>,
+        normal: impl Into<DVec3>,
+        point: impl Into<DVec3>,
+        xdir: impl Into<DVec3>,
+        dimensions: impl Into<DVec2>,
+        texture: TextureId,
+        mode: TextureMode,
+    ) -> &mut Self {
+        let Draft {
+            location,
+            emissivity,
+            ..
+        } = light(name, location, emissivity);
+        let mut draft = finite(plane(name, MaterialId(0), normal, point), xdir, dimensions);
+        (draft.location, draft.emissivity) = (location, emissivity);
+        draft.set_texture(texture.0, mode);
+        self.add(EntityKind::Light(LightClass::Projector), draft)
     }
 
     /// Adds a triangle: its vertices (not in a line), and a direction to the side that is its front (not in its plane),

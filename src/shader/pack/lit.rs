@@ -5,7 +5,7 @@ use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Bounded, Real, V3};
 use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, U, round_up, upper_bound};
-use crate::shader::records::{Light, LitObject, Material, WorldPlane, WorldSphere};
+use crate::shader::records::{Light, LitObject, Material, Projector, WorldPlane, WorldSphere};
 
 /// The records of a lit scene, and what its materials can do.
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub struct Lit {
     pub materials: Vec<Material>,
     /// The scene's lights.
     pub lights: Vec<Light>,
+    /// The projectors among them that light anything.
+    pub projectors: Vec<Projector>,
     /// Every plane, rectangle and triangle.
     pub planes: Vec<WorldPlane>,
     /// The third sides of the triangles among them: row and origin, as the other sides have them.
@@ -42,7 +44,13 @@ const SPHERE_BIT: u32 = 1 << 31;
 const QUADRIC_BIT: u32 = 1 << 30;
 
 impl Lit {
-    pub(super) fn new(scene: &Prepared<Bounded>, world: &World<Bounded>, packed: &Packed) -> Self {
+    /// With the record of each light that is a projector and lights anything.
+    pub(super) fn new(
+        scene: &Prepared<Bounded>,
+        world: &World<Bounded>,
+        packed: &Packed,
+        projectors: &[Option<Projector>],
+    ) -> Self {
         let used = || scene.materials.iter().map(|&index| &scene.palette[index]);
         let in_tree = world.bvh.as_ref().map_or(0, |bvh| bvh.len);
         let (planes, spheres) = (&world.planes, &world.spheres);
@@ -73,7 +81,8 @@ impl Lit {
                 })
                 .collect(),
             materials: scene.palette.iter().map(material).collect(),
-            lights: world.lights.iter().map(light).collect(),
+            lights: lights(world, projectors),
+            projectors: projectors.iter().flatten().copied().collect(),
             planes: planes
                 .iter()
                 .map(|p| world_plane(world, p, &mut third_sides))
@@ -135,11 +144,23 @@ fn material(material: &prepare::Material<Bounded>) -> Material {
     }
 }
 
-fn light(light: &prepare::Light<Bounded>) -> Light {
+/// The lights, with their places among the projectors.
+fn lights(world: &World<Bounded>, projectors: &[Option<Projector>]) -> Vec<Light> {
+    let mut place = 0;
+    let mut numbered = |(record, projector): (&prepare::Light<Bounded>, &Option<Projector>)| {
+        place += u32::from(projector.is_some());
+        light(record, if projector.is_some() { place } else { 0 })
+    };
+    let lights = world.lights.iter().zip(projectors);
+    lights.map(&mut numbered).collect()
+}
+
+fn light(light: &prepare::Light<Bounded>, place: u32) -> Light {
     let prepare::Light {
         location,
         emissivity,
         cone,
+        ref projector,
         // Narrow cones are told by their sines on the CPU alone.
         narrow: _,
     } = *light;
@@ -148,10 +169,15 @@ fn light(light: &prepare::Light<Bounded>) -> Light {
     Light {
         location: f32x3(location),
         cosine: cosine.value as f32,
-        emissivity: factors(emissivity),
+        // A projector that lights nothing is as good as a dark light.
+        emissivity: if projector.is_some() && place == 0 {
+            [0.0; 3]
+        } else {
+            factors(emissivity)
+        },
         size: size(location),
         axis: f32x3(axis),
-        pad: Default::default(),
+        projector: place,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod lit;
 mod primary;
+mod projector;
 mod quadric;
 mod range;
 mod shared;
@@ -134,7 +135,9 @@ impl Packed {
         };
         packed.pack_primary(prepared, &surfaces, screen);
         let mut textures = vec![None; prepared.textures.len()];
-        if prepared.world.is_some() {
+        let mut projectors = Vec::new();
+        if let Some(world) = &prepared.world {
+            projectors = packed.pack_projectors(prepared, world, &mut textures);
             // Any ray can hit any object.
             for object in 0..prepared.surfaces.len() {
                 packed.pack_surface(prepared, object, &mut textures, 0);
@@ -158,7 +161,7 @@ impl Packed {
         packed.lit = prepared
             .world
             .as_ref()
-            .map(|world| Lit::new(prepared, world, &packed));
+            .map(|world| Lit::new(prepared, world, &packed, &projectors));
         packed.dark = packed.darkness();
         packed.tree_size = round_up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
         packed.unprovable = packed.doubtful_numbers();
@@ -268,16 +271,7 @@ impl Packed {
                 );
             }
             prepare::Surface::Textured(textured) => {
-                let first = *textures[textured.texture].get_or_insert_with(|| {
-                    let first = self.texels.len() as u32;
-                    let texels = &scene.textures[textured.texture];
-                    let rows = texels.rgb.chunks_exact(3 * texels.width as usize).rev();
-                    let pack =
-                        |t: &[u8]| u32::from(t[0]) | u32::from(t[1]) << 8 | u32::from(t[2]) << 16;
-                    self.texels
-                        .extend(rows.flat_map(|row| row.chunks_exact(3)).map(pack));
-                    first
-                });
+                let first = self.pack_texture(scene, textured.texture, textures);
                 self.texplanes.push(texplane(textured, first));
                 self.set_kind(object, SurfaceKind::Textured, self.texplanes.len() - 1);
             }

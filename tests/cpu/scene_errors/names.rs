@@ -65,20 +65,12 @@ fn unknown_entity() {
 #[test]
 fn unsupported_entity() {
     check_rest(
-        "projector p { }\nrevsurf r { }",
+        "revsurf r { }",
         expect![[r#"
-            error: `projector` is not supported
+            error: `revsurf` is not supported
               --> scene.txt:3:1
               |
-            3 | projector p { }
-              | ^^^^^^^^^
-              |
-              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
-
-            error: `revsurf` is not supported
-              --> scene.txt:4:1
-              |
-            4 | revsurf r { }
+            3 | revsurf r { }
               | ^^^^^^^
               |
               = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric

@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, SamplePattern, Settings};
 use plumb::scene::{
-    self, Beam, Camera, Cone, Extent, Light, Material, Object, Rectangle, Scene, Shape, Surface,
-    Texels, Texture, TextureMode,
+    self, Beam, Camera, Cone, Extent, Light, Material, Object, ProjectorPicture, Rectangle, Scene,
+    Shape, Surface, Texels, Texture, TextureMode,
 };
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
@@ -42,6 +42,7 @@ pub(super) enum Ingredient {
     Texplane(TextureMode),
     Lamp,
     Spotlight,
+    Projector(TextureMode),
     LampInFloor,
     LampOverFloor,
     Mirror,
@@ -75,6 +76,8 @@ pub(super) fn ingredients() -> Vec<Ingredient> {
         Texplane(TextureMode::Tile),
         Lamp,
         Spotlight,
+        Projector(TextureMode::Fit),
+        Projector(TextureMode::Tile),
         LampInFloor,
         LampOverFloor,
         Mirror,
@@ -195,7 +198,7 @@ pub(super) fn objects(ingredient: Ingredient) -> Vec<Object> {
         Glass => vec![of_material(2, small(Surface::Plain))],
         Glint => vec![of_material(3, small(Surface::Plain))],
         LampInFloor | LampOverFloor => vec![floor(Surface::Plain)],
-        Values | Fast | Lamp | Spotlight | Samples | CourseSamples => vec![],
+        Values | Fast | Lamp | Spotlight | Projector(_) | Samples | CourseSamples => vec![],
     }
 }
 
@@ -274,6 +277,19 @@ fn lights(ingredient: Ingredient) -> Vec<Light> {
         Lamp | Mirror | Glass | Glint => vec![light(6.0, Beam::Everywhere)],
         LampInFloor => vec![light(-1.0, Beam::Everywhere)],
         LampOverFloor => vec![light(-0.999, Beam::Everywhere)],
+        Projector(mode) => vec![light(
+            6.0,
+            Beam::Picture(ProjectorPicture {
+                normal: DVec3::Y,
+                point: DVec3::new(3.0, 5.0, 1.0),
+                rectangle: Rectangle {
+                    xdir: DVec3::X,
+                    dimensions: DVec2::new(2.0, 3.0),
+                },
+                texture: 0,
+                mode,
+            }),
+        )],
         Spotlight => vec![light(
             6.0,
             Beam::Cone(Cone {

@@ -31,7 +31,13 @@ fn modules() -> Vec<naga::Module> {
         .filter(|i| {
             !matches!(
                 i,
-                Lamp | Spotlight | LampInFloor | LampOverFloor | Mirror | Glass | Glint
+                Lamp | Spotlight
+                    | Projector(_)
+                    | LampInFloor
+                    | LampOverFloor
+                    | Mirror
+                    | Glass
+                    | Glint
             )
         })
         .collect();

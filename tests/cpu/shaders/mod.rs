@@ -9,7 +9,7 @@ use glam::DVec3;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use plumb::procedural::{self, Family};
 use plumb::render::{Precision, Settings};
-use plumb::scene::Scene;
+use plumb::scene::{Scene, TextureMode};
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature::Feature;
 use plumb::shader::feature_set::FeatureSet;
@@ -67,7 +67,7 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     let dark = |i: &Ingredient| {
         !matches!(
             i,
-            Lamp | Spotlight | LampInFloor | LampOverFloor | Mirror | Glass | Glint
+            Lamp | Spotlight | Projector(_) | LampInFloor | LampOverFloor | Mirror | Glass | Glint
         )
     };
     let without_many: Vec<_> = all.iter().copied().filter(few).collect();
@@ -306,6 +306,11 @@ fn what_is_not_used_is_not_there() {
     }
     assert!(!composed(&[Plane, Lamp]).0.contains("light.axis)"));
     assert!(composed(&[Plane, Spotlight]).0.contains("light.axis)"));
+    assert!(!composed(&[Plane, Lamp]).0.contains("Passage"));
+    let projected = composed(&[Plane, Projector(TextureMode::Fit)]).0;
+    assert!(projected.contains("passage(") && projected.contains("texel_at("));
+    // What belongs to textures on things is not there.
+    assert!(!projected.contains("index_error(") && !projected.contains("Texplane"));
 }
 
 #[test]

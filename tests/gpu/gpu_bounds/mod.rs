@@ -13,6 +13,7 @@ mod lanes;
 mod lights;
 mod pictures;
 mod primary;
+mod projectors;
 mod quadrics;
 mod roundings;
 mod support;
@@ -231,6 +232,32 @@ fn what_a_light_brings() {
     }
 }
 
+#[test]
+fn through_a_picture() {
+    let gpu = support::open();
+    let [exact, off] = projectors::passages(&gpu, str::to_owned, true, MANY);
+    exact.judge(DECIDED, TIGHT);
+    off.judge(DECIDED, TIGHT_OFF);
+    let violations = |change: &dyn Fn(&str) -> String, own| {
+        let without = projectors::passages(&gpu, change, own, MANY / 4);
+        let violations = without.iter().map(BoundStatistics::violations);
+        violations.sum::<usize>()
+    };
+    assert_eq!(
+        violations(&faults::at_least, true),
+        0,
+        "the derivation is wrong"
+    );
+    assert!(
+        violations(&faults::at_least, false) > 0,
+        "a projector's errors = 0 are not noticed"
+    );
+    for name in ["CLOSE", "U"] {
+        let without = |wgsl: &str| support::with_constant(wgsl, name, "0f");
+        assert!(violations(&without, true) > 0, "{name} = 0 is not noticed");
+    }
+}
+
 /// Operands are exact here, and no other term can hide what a constant counts.
 #[test]
 fn roundings_one_by_one() {
@@ -287,6 +314,7 @@ const PICTURES: &[&str] = &[
     "hard/lit_lamp_at_hit",
     "hard/lit_lamp_over_floor",
     "hard/lit_panes_coplanar",
+    "hard/lit_projector_tied",
     "hard/lit_shadow_tangent",
     "hard/lit_spot_45",
     "hard/pplane_2_floor_tie",
@@ -295,6 +323,7 @@ const PICTURES: &[&str] = &[
     "hard/tangent_rays",
     "hard/tied_lines",
     "lit/kaleidoscope",
+    "lit/magic_lantern",
     "lit/mirror_floor",
     "lit/texture_repeated",
     "lit/tiles_xdir",

@@ -40,6 +40,9 @@ pub(crate) fn without_literal_bounds(packed: &mut Packed) {
     for texplane in &mut packed.texplanes {
         texplane.errors = [0.0; 2];
     }
+    for projector in packed.lit.iter_mut().flat_map(|lit| &mut lit.projectors) {
+        projector.errors = [0.0; 2];
+    }
     for plane in packed.lit.iter_mut().flat_map(|lit| &mut lit.planes) {
         plane.sides_error = 0.0;
     }

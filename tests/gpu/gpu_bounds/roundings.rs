@@ -93,6 +93,18 @@ const COUNTED: &[Counted] = &[
         truth: |[a, b, _]| (alone(a.dot(b)), 1.0),
     },
     Counted {
+        constant: "BEYOND_ROUNDINGS",
+        wgsl: "vec3f(dot(a, b), 0.0, 0.0)",
+        operands: any,
+        truth: |[a, b, _]| (alone(a.dot(b)), a.length()),
+    },
+    Counted {
+        constant: "PICTURE_ROUNDINGS",
+        wgsl: "vec3f(c.x / c.y * barrier(vec3f(dot(a, b), 0.0, 0.0)).x, 0.0, 0.0)",
+        operands: any,
+        truth: |[a, b, c]| (alone(c.x / c.y * a.dot(b)), c.x / c.y * a.length()),
+    },
+    Counted {
         constant: "HALF_ROUNDINGS",
         wgsl: "a - b",
         operands: units,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::chance::Random;
-use super::lamps::{spots, stuff};
+use super::lamps::{lanterns, spots, stuff};
 
 /// What is tried of a kind.
 #[derive(Debug, Clone)]
@@ -29,15 +29,18 @@ pub(super) enum SurfaceKind {
     Spots,
     /// Materials and lights whose products leave all ranges.
     Stuff,
+    /// Projectors whose pictures are of any size, at any place.
+    Lanterns,
 }
 
-pub(super) const KINDS: [SurfaceKind; 6] = [
+pub(super) const KINDS: [SurfaceKind; 7] = [
     SurfaceKind::Scaled,
     SurfaceKind::Mixed,
     SurfaceKind::Chain,
     SurfaceKind::Course,
     SurfaceKind::Spots,
     SurfaceKind::Stuff,
+    SurfaceKind::Lanterns,
 ];
 
 /// Exponents of ten around which something gives way: f64's end, that of its squares, that of its subnormals, and
@@ -155,6 +158,7 @@ pub(super) fn case(kind: SurfaceKind, number: u64) -> Case {
             case.text = fine(random);
         }
         SurfaceKind::Spots => case.text = spots(random),
+        SurfaceKind::Lanterns => case.text = lanterns(random),
         SurfaceKind::Stuff => {
             case.text = stuff(random);
             case.max_path = random.one(&[20.0, 40.0]);

@@ -45,6 +45,53 @@ pub(super) fn spots(random: &mut Random) -> String {
     text
 }
 
+/// Projectors whose pictures are as small or large, as near or far, as numbers are.
+pub(super) fn lanterns(random: &mut Random) -> String {
+    let mut text = camera(random, 0);
+    text += "texture t { filename textures/texels.ppm }
+             material a { ambient 1 1 1 diffuse 4 5 6 specular 0.5 shininess 3 }\n";
+    let wall = random.one(&["0 0 1", "0 1 1", "1 0 2"]);
+    writeln!(text, "plane p {{ material a normal {wall} point 0 -1 -4 }}").unwrap();
+    if random.once_in(2) {
+        text += "sphere s { material a center 4 3 -3 radius 1 }\n";
+    }
+    for _ in 0..1 + random.below(2) {
+        let mut point = |middle: [f64; 3], odd: u64| {
+            let c = middle.map(|near| {
+                let number = near + random.one(&[0.0, 0.0, 0.5, -0.25]);
+                match random.below(odd) {
+                    0 => any_size(random, number),
+                    // Next to the middle, by far less than f64 tells beside it.
+                    1 => format!("{:?}", number + random.one(&[1e-9, -1e-15, 1e-300])),
+                    _ => format!("{number:?}"),
+                }
+            });
+            c.join(" ")
+        };
+        let (location, corner) = (point([4.0, 3.0, 2.0], 12), point([3.0, 2.0, 1.0], 5));
+        let (normal, xdir) = random.one(&[
+            ("0 0 1", "1 0 0"),
+            ("0 0 -1e-200", "1 1e-9 0"),
+            ("0 1 1", "1 0 0"),
+            ("1e300 2e300 3e300", "1 0 1e-30"),
+            ("1 0 1e-12", "0 3e-320 0"),
+        ]);
+        let mut side = || match random.below(3) {
+            0 => scaled(random.between(1.0, 9.0), random.one(&EXPONENTS)),
+            _ => format!("{:?}", random.one(&[0.5, 2.0, 4.0, 30.0])),
+        };
+        let dimensions = [side(), side()].join(" ");
+        let mode = random.below(2);
+        writeln!(
+            text,
+            "projector l {{ location {location} emissivity 9 8 7 normal {normal} point {corner} xdir {xdir} \
+             dimensions {dimensions} texname t mode {mode} }}"
+        )
+        .unwrap();
+    }
+    text
+}
+
 /// Materials of any size.
 pub(super) fn stuff(random: &mut Random) -> String {
     let mut text = camera(random, 0);

@@ -160,7 +160,7 @@ fn scenes_may_be_flipped() {
 
 /// x becomes worlddim.x − x; None where that is not exact, or where left and right are not alike.
 fn flipped(text: &str) -> Option<String> {
-    if ["tiled_plane", "pplane", "fplane"]
+    if ["tiled_plane", "pplane", "fplane", "projector"]
         .iter()
         .any(|kind| text.contains(kind))
     {

@@ -11,7 +11,7 @@ use plumb::scene::{Extent, Shape, Triangle};
 use super::Fault;
 use super::real::{Real, Unresolved};
 use super::vector::Vector;
-use super::world::{Body, Form, Quadric, World};
+use super::world::{Body, Form, Quadric, Sides, World};
 
 /// Where a line meets an object.
 #[derive(Debug)]
@@ -287,6 +287,16 @@ impl World<'_> {
         let (Form::Plane { point: corner, .. }, Some(sides)) = (&body.form, &body.sides) else {
             panic!("a rectangle is a plane with sides");
         };
+        self.within_sides(sides, corner, hit)
+    }
+
+    /// Whether a point of the plane of a rectangle is the rectangle's.
+    pub(crate) fn within_sides(
+        &self,
+        sides: &Sides,
+        corner: &Vector,
+        hit: &Vector,
+    ) -> Result<bool, Unresolved> {
         let from_corner = hit - corner;
         for i in [0, 1] {
             let place = sides.directions[i].dot(&from_corner);

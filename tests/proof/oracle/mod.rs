@@ -83,6 +83,10 @@ pub(crate) enum Fault {
     PathEnds,
     /// The edges of a rectangle are not its own: < for ≤.
     OpenRectangle,
+    /// A projector's glint has no picture: E for E∘texel.
+    GlintWithoutPicture,
+    /// A projector's picture that is behind the hit colours it: 0 < f for 0 < f < 1.
+    PictureBehind,
     /// Bytes are rounded, not cut off.
     Rounds,
 }

@@ -5,7 +5,7 @@ use plumb::scene::{Shape, Surface, TextureMode};
 
 use super::real::{Real, Unresolved};
 use super::vector::Vector;
-use super::world::{Body, Form, Stuff, World};
+use super::world::{Body, Form, Sides, Stuff, World};
 
 /// Whether a whole number is odd.
 fn odd(n: &IBig) -> bool {
@@ -125,6 +125,17 @@ impl World<'_> {
         else {
             return Ok(colour.clone());
         };
+        Ok(colour.times(&self.texel((texture, mode), sides, corner, hit)?))
+    }
+
+    /// The texel at a point of a rectangle.
+    pub(crate) fn texel(
+        &self,
+        (texture, mode): (usize, TextureMode),
+        sides: &Sides,
+        corner: &Vector,
+        hit: &Vector,
+    ) -> Result<Vector, Unresolved> {
         let texels = &self.scene.textures[texture].texels;
         let camera = &self.scene.camera;
         let from_corner = hit - corner;
@@ -155,6 +166,6 @@ impl World<'_> {
             let byte = Real::integer(i64::from(texels.rgb[at + c]));
             &byte / &Real::integer(256)
         });
-        Ok(colour.times(&Vector(texel)))
+        Ok(Vector(texel))
     }
 }

@@ -216,6 +216,9 @@ impl World<'_> {
                 return Ok(None);
             }
         }
+        let Some(emissivity) = self.emissivity(lamp, object, hit)? else {
+            return Ok(None);
+        };
         let Some(transmittance) = self.shadow(hit, &to_lamp, &lamp.location, object)? else {
             return Ok(None);
         };
@@ -224,7 +227,7 @@ impl World<'_> {
         let light = &facing / &(&size * &square);
         let mut term = self
             .diffuse(body, hit)?
-            .times(&lamp.emissivity)
+            .times(&emissivity)
             .times(&transmittance)
             .scale(&light);
         let material = &self.scene.materials[body.object.material];
@@ -238,15 +241,52 @@ impl World<'_> {
                 let cosine = &to_base.dot(&to_lamp) / &(&far * &dist);
                 let sum = (&Real::integer(2) + &(&Real::integer(2) * &cosine)).sqrt();
                 let shine = (&both / &(&sum * &size)).power(material.shininess)?;
+                let bare = self.rules.fault == Some(Fault::GlintWithoutPicture);
                 let glint = self
                     .stuff(body)
                     .specular
-                    .times(&lamp.emissivity)
+                    .times(if bare { &lamp.emissivity } else { &emissivity })
                     .scale(&shine);
                 term = &term + &glint;
             }
         }
         Ok(Some(term))
+    }
+
+    /// How bright a lamp is for a hit: a projector's light has to pass its picture, and takes its colour.
+    fn emissivity(
+        &self,
+        lamp: &Lamp,
+        object: usize,
+        hit: &Vector,
+    ) -> Result<Option<Vector>, Failure> {
+        let Some(slide) = &lamp.slide else {
+            return Ok(Some(lamp.emissivity.clone()));
+        };
+        // On the picture's own plane N·H is N·Q, which needs no hit: f = 1.
+        if slide.carrier == Some(self.bodies[object].carrier) {
+            return Ok(None);
+        }
+        let over = (&slide.point - &lamp.location).dot(&slide.normal).settled();
+        let way = hit - &lamp.location;
+        let under = way.dot(&slide.normal);
+        // Where the segment is parallel to the plane f is not defined; where the lamp lies in it, f is 0.
+        if over.is_zero()? || under.is_zero()? {
+            return Ok(None);
+        }
+        let part = &over / &under;
+        let end = part.compare(&Real::integer(1))?;
+        let behind = self.rules.fault == Some(Fault::PictureBehind);
+        if !part.is_positive()? || end != Ordering::Less && !behind {
+            return Ok(None);
+        }
+        let crossing = &lamp.location + &way.scale(&part);
+        if !self.within_sides(&slide.sides, &slide.point, &crossing)? {
+            return Ok(None);
+        }
+        let texture = (slide.texture, slide.mode);
+        let texel = self.texel(texture, &slide.sides, &slide.point, &crossing)?;
+        Ok(Some(lamp.emissivity.times(&texel)))
     }
 
     /// What of a light comes from `to_lamp` away, colour by colour; nothing behind what is opaque.

@@ -8,7 +8,10 @@ use std::collections::HashMap;
 
 use dashu_ratio::RBig;
 use glam::{DVec2, DVec3};
-use plumb::scene::{self, Beam, Extent, Light, Material, Object, Scene, Shape, Surface, Triangle};
+use plumb::scene::{
+    self, Beam, Extent, Light, Material, Object, ProjectorPicture, Scene, Shape, Surface,
+    TextureMode, Triangle,
+};
 
 use super::Rules;
 use super::angle::cosine_of;
@@ -130,6 +133,20 @@ pub(crate) struct Lamp {
     pub(crate) location: Vector,
     pub(crate) emissivity: Vector,
     pub(crate) cone: Option<Cone>,
+    pub(crate) slide: Option<Slide>,
+}
+
+/// The picture that a projector throws.
+#[derive(Debug)]
+pub(crate) struct Slide {
+    pub(crate) normal: Vector,
+    /// The corner where the texture begins.
+    pub(crate) point: Vector,
+    pub(crate) sides: Sides,
+    pub(crate) texture: usize,
+    pub(crate) mode: TextureMode,
+    /// Which infinite plane it lies on, if an object lies there too.
+    pub(crate) carrier: Option<usize>,
 }
 
 /// What a spotlight lights.
@@ -144,7 +161,7 @@ pub(crate) struct Cone {
 
 impl<'s> World<'s> {
     pub(crate) fn new(scene: &'s Scene, rules: &'s Rules) -> Self {
-        let mut carriers = HashMap::new();
+        let mut carriers = Carriers::new();
         Self {
             scene,
             rules,
@@ -164,10 +181,17 @@ impl<'s> World<'s> {
                 .collect(),
             carriers: carriers.len(),
             materials: scene.materials.iter().map(stuff).collect(),
-            lamps: scene.lights.iter().map(lamp).collect(),
+            lamps: scene
+                .lights
+                .iter()
+                .map(|light| lamp(light, &carriers))
+                .collect(),
         }
     }
 }
+
+/// Numbers of the planes, spheres and quadrics that objects lie on.
+type Carriers = HashMap<(u8, Vec<RBig>), usize>;
 
 /// What is the same for shapes on the same plane, sphere or quadric, and for no others; but a quadric is no sphere.
 fn carrier(shape: &Shape) -> (u8, Vec<RBig>) {
@@ -341,17 +365,17 @@ fn sides(normal: &Vector, xdir: DVec3, dimensions: DVec2) -> Sides {
     }
 }
 
-fn lamp(light: &Light) -> Lamp {
+fn lamp(light: &Light, carriers: &Carriers) -> Lamp {
     let Light {
         name: _,
         location,
         emissivity,
         beam,
     } = *light;
-    let cone = match beam {
-        Beam::Cone(cone) => Some(cone),
-        Beam::Everywhere => None,
-        Beam::Picture(_) => panic!("no scene has a projector yet"),
+    let (cone, slide) = match beam {
+        Beam::Everywhere => (None, None),
+        Beam::Cone(cone) => (Some(cone), None),
+        Beam::Picture(picture) => (None, Some(slide(&picture, carriers))),
     };
     let location = Vector::from_f64(location);
     Lamp {
@@ -364,7 +388,32 @@ fn lamp(light: &Light) -> Lamp {
                 cosine: cosine_of(theta),
             }
         }),
+        slide,
         location,
+    }
+}
+
+fn slide(picture: &ProjectorPicture, carriers: &Carriers) -> Slide {
+    let ProjectorPicture {
+        normal,
+        point,
+        rectangle,
+        texture,
+        mode,
+    } = *picture;
+    let plane = Shape::Plane {
+        normal,
+        point,
+        extent: Extent::Unbounded,
+    };
+    let normal = Vector::from_f64(normal);
+    Slide {
+        sides: sides(&normal, rectangle.xdir, rectangle.dimensions),
+        normal,
+        point: Vector::from_f64(point),
+        texture,
+        mode,
+        carrier: carriers.get(&carrier(&plane)).copied(),
     }
 }
 

@@ -6,7 +6,8 @@ use proptest::sample::select;
 
 use super::quadrics::quadrics;
 use super::strategy::{
-    ball, cross, hair, light, material, moved, nearly, normal, place, plane, point, radius, show,
+    Point, ball, cross, hair, light, material, moved, nearly, normal, place, plane, point, radius,
+    show,
 };
 use super::triangles;
 
@@ -28,6 +29,7 @@ pub(super) fn objects() -> BoxedStrategy<String> {
         4 => room(),
         2 => slanted_mirror(),
         4 => quadrics(),
+        2 => lantern(),
     ]
     .boxed()
 }
@@ -92,23 +94,11 @@ fn tiles() -> BoxedStrategy<String> {
 
 /// A rectangle of a wall, floor or slanted plane; a painting on a wall; panes in a row.
 fn rectangles() -> BoxedStrategy<String> {
-    let size = || select(vec!["1", "2", "4", "1.5", "8", "2.8284271247461903"]);
-    let frames = select(vec![
-        ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]),
-        ([0.0, 0.0, 2.0], [1.0, 1.0, 0.0]),
-        ([0.0, 1.0, 0.0], [0.0, 0.0, -1.0]),
-        ([0.0, -1.0, 0.0], [1.0, 0.0, 0.0]),
-        ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
-        ([3.0, 0.0, 4.0], [0.0, 1.0, 0.0]),
-        ([0.0, 1.0, 1.0], [1.0, 0.0, 0.0]),
-        ([1.0, 2.0, 2.0], [2.0, 1.0, -2.0]),
-        ([1.0, 1.0, 1.0], [1.0, 0.0, 0.0]),
-    ]);
     (
         [material(), material()],
-        frames,
+        frame(),
         point(),
-        [size(), size()],
+        [side(), side()],
         0..6,
         select(vec!["texels", "window"]),
         0..2,
@@ -128,6 +118,57 @@ fn rectangles() -> BoxedStrategy<String> {
                         + &plane("fplane", "pane", n, behind, &extent)
                 }
             }
+        })
+        .boxed()
+}
+
+/// A rectangle's side.
+fn side() -> impl Strategy<Value = &'static str> {
+    select(vec!["1", "2", "4", "1.5", "8", "2.8284271247461903"])
+}
+
+/// A rectangle's normal and xdir.
+fn frame() -> impl Strategy<Value = (Point, Point)> {
+    select(vec![
+        ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]),
+        ([0.0, 0.0, 2.0], [1.0, 1.0, 0.0]),
+        ([0.0, 1.0, 0.0], [0.0, 0.0, -1.0]),
+        ([0.0, -1.0, 0.0], [1.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ([3.0, 0.0, 4.0], [0.0, 1.0, 0.0]),
+        ([0.0, 1.0, 1.0], [1.0, 0.0, 0.0]),
+        ([1.0, 2.0, 2.0], [2.0, 1.0, -2.0]),
+        ([1.0, 1.0, 1.0], [1.0, 0.0, 0.0]),
+    ])
+}
+
+/// A projector before a wall that is as far behind the picture, so that borders of texels meet pixels; before one that
+/// the picture lies in; in its own picture's plane, or a hair off it; before nothing of its own.
+fn lantern() -> BoxedStrategy<String> {
+    (
+        material(),
+        frame(),
+        point(),
+        [side(), side()],
+        (0..4, hair()),
+        select(vec![1.0, 2.0, 4.0, -1.0, 0.0]),
+        (select(vec!["texels", "window"]), 0..2),
+    )
+        .prop_map(|(m, (n, x), p, size, (kind, hair), away, (texture, mode))| {
+            let location = moved(moved(p, x, 0.5), n, nearly(away, hair));
+            let behind = moved(p, n, -nearly(away, hair));
+            let [normal, location, xdir, corner] = [n, location, x, p].map(show);
+            let lantern = format!(
+                "projector l {{ location {location} emissivity 9 6 7 normal {normal} point {corner} xdir {xdir} \
+                 dimensions {} texname {texture} mode {mode} }}\n",
+                size.join(" ")
+            );
+            let wall = match kind {
+                0 | 1 => plane("plane", m, n, behind, ""),
+                2 => plane("plane", m, n, p, ""),
+                _ => String::new(),
+            };
+            wall + &lantern
         })
         .boxed()
 }
