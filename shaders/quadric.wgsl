@@ -27,7 +27,7 @@ struct QuadricRay {
 }
 
 // How a line passes a quadric.
-struct Passage {
+struct QuadricPassage {
     // From C to the line, at right angles, and where along the ray that is.
     perpendicular: vec3f,
     along: f32,
@@ -49,8 +49,8 @@ fn symmetric(diagonal: vec3f, beside: vec3f, v: vec3f) -> vec3f {
         beside.y * v.x + beside.x * v.y + diagonal.z * v.z);
 }
 
-fn quadric_passage(quadric: Quadric, ray: QuadricRay) -> Passage {
-    var passage: Passage;
+fn quadric_passage(quadric: Quadric, ray: QuadricRay) -> QuadricPassage {
+    var passage: QuadricPassage;
     let from_center = barrier(ray.base - quadric.center);
     passage.along = barrier1(-dot(from_center, ray.dir));
     passage.perpendicular = barrier(from_center + passage.along * ray.dir);

@@ -40,6 +40,9 @@ pub struct Start {
     pub light_on_surface: bool,
 }
 
+/// t of a hit, and its position.
+pub type Met<R> = (R, V3<R>);
+
 /// t of all hits on the quadric for a ray from anywhere, of unit direction, nearest first, with their positions.
 /// `distance` is that of a shadow ray's light; hits are then told of only before it if it lies on the surface.
 pub fn quadric_hits_from<R: Real>(
@@ -48,7 +51,7 @@ pub fn quadric_hits_from<R: Real>(
     dir: V3<R>,
     start: Start,
     distance: Option<R>,
-) -> Result<[Option<(R, V3<R>)>; 2], Undecided> {
+) -> Result<[Option<Met<R>>; 2], Undecided> {
     let mut line = Line {
         square: None,
         slope: quadric.slope.dot(dir),

@@ -258,7 +258,12 @@ fn strays(text: &[u8], scene: &Scene) -> usize {
             return true;
         };
         let (kind, name) = target::kind_and_name(scene, *id).unwrap();
-        text[place.kind] != *kind.as_bytes() || text[place.name] != *name.as_bytes()
+        // The only type that has another spelling.
+        let spelt = match &text[place.kind] {
+            b"tri" => b"triangle",
+            spelt => spelt,
+        };
+        spelt != kind.as_bytes() || text[place.name] != *name.as_bytes()
     };
     let is_stray_value = |target: &Target| {
         let Some(place) = places.of(text, target.entity()) else {

@@ -321,11 +321,14 @@ impl<'a> Equation<'a> {
     }
 }
 
+/// What a curved quadric's equation is known by, and what the sphere is known by that it may be.
+type Keys = (Option<[RBig; 10]>, Option<[RBig; 4]>);
+
 /// For each object the surfaces of others that have the same points as it, if it is a curved quadric.
 pub(super) fn same_points(scene: &Scene, groups: &[u32]) -> Vec<Vec<u32>> {
     let mut curved: HashMap<[RBig; 10], Vec<u32>> = HashMap::new();
     let mut balls: HashMap<[RBig; 4], Vec<u32>> = HashMap::new();
-    let mut keys = Vec::new();
+    let mut keys: Vec<Keys> = Vec::new();
     for (object, &group) in scene.objects.iter().zip(groups) {
         let equation = Equation::of(&object.shape).filter(|equation| !equation.is_flat());
         let key = equation.map(|equation| equation.key());
@@ -344,7 +347,8 @@ pub(super) fn same_points(scene: &Scene, groups: &[u32]) -> Vec<Vec<u32>> {
             }
         }
     }
-    let of = |((curve, ball), own): (&(Option<[RBig; 10]>, Option<[RBig; 4]>), &u32)| {
+    let of = |(keys, own): (&Keys, &u32)| {
+        let (curve, ball) = keys;
         let quadrics = curve.as_ref().and_then(|key| curved.get(key));
         let spheres = ball.as_ref().and_then(|key| balls.get(key));
         let all = quadrics.into_iter().chain(spheres).flatten();

