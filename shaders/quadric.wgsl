@@ -58,7 +58,7 @@ fn quadric_passage(quadric: Quadric, ray: QuadricRay) -> QuadricPassage {
     passage.gradient = barrier(symmetric(quadric.diagonal, quadric.beside, p) + quadric.slope);
     passage.turn = barrier(symmetric(quadric.diagonal, quadric.beside, ray.dir));
 //#if certified
-    let far = FAR_GROWTH * (abs(passage.along) + sum3(p));
+    let far = FAR_GROWTH * (abs(passage.along) + sum3(p) + ray.base_error);
     passage.off = SECOND_ORDER * ray.base_error + U * quadric.size
         + far * ((TURN + TURN_MORE * ray.dir_error) * ray.dir_error + PERPENDICULAR_ROUNDINGS * U);
     let moved = symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(p)) + abs(quadric.slope);

@@ -166,8 +166,8 @@ impl<R: Real> Quadric<R> {
 
     /// How far the surface is from a position at least.
     ///
-    /// v away the left side has changed by at most |gradient|·|v| + |M|·|v|², M its matrix, and that is as much as there
-    /// is of it not before 2·|left side|/(|gradient| + √(|gradient|² + 4·|M|·|left side|)).
+    /// v away the left side has changed by at most |gradient|·|v| + |M|·|v|², M its matrix, and that is as much as
+    /// there is of it not before 2·|left side|/(|gradient| + √(|gradient|² + 4·|M|·|left side|)).
     pub(super) fn distance(&self, from: V3<R>) -> f64 {
         let mut left = self.slope.dot(from) + self.constant;
         let mut matrix = 0.0;

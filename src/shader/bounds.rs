@@ -169,7 +169,8 @@ named! {
     WEIGHT_ROUNDINGS = 2.0, at least 1.5;
     /// Roundings that a pane adds to it.
     PANE_WEIGHT_ROUNDINGS = 5.0, at least 3.0;
-    /// What a mirror or pane adds to the bound of a weight, for a unit of it: its own roundings, and those of the bound.
+    /// What a mirror or pane adds to the bound of a weight, for a unit of it: its own roundings, and those of the
+    /// bound.
     WEIGHT_GROWTH = 6.0, at least 6.0;
     /// Roundings of what is left of the longest path.
     PATH_ROUNDINGS = 2.0, at least 1.5;

@@ -338,7 +338,10 @@ fn the_drgb_of_a_listing_is_the_whole_colour() {
         .run(&["probe", "bright.txt", "22", "14"])
         .ends(0)
         .text();
-    assert!(text.contains("not followed: the colour is full"), "{text}");
+    assert!(
+        text.contains("not followed, nothing that it brings can count"),
+        "{text}"
+    );
     let listed = ran
         .stderr
         .lines()
