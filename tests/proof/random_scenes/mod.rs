@@ -23,7 +23,7 @@ use crate::oracle::{self, Answer, Failure, Rules};
 use strategy::{Plan, plan};
 
 /// Scenes tried without being asked for more.
-const SCENES: u64 = 1_000;
+const SCENES: u64 = 300;
 
 /// Without being asked for a number, the GPU gets one scene in so many: it compiles a shader for each.
 const ONE_FOR_THE_GPU: u64 = 5;
