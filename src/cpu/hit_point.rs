@@ -7,9 +7,10 @@ use super::camera::Ray;
 use super::sphere::sphere_from_center;
 use super::trace::Hit;
 use crate::prepare::Prepared;
+use crate::prepare::surface::flat_axis;
 use crate::real::Real;
 use crate::real::rational::two_to;
-use crate::scene::{Scene, Shape, Triangle};
+use crate::scene::{Scene, Shape};
 
 /// Where a primary ray hits, in world coordinates.
 ///
@@ -23,22 +24,12 @@ pub fn hit_point<R: Real>(
 ) -> DVec3 {
     let unit = two_to(prepared.camera.scale);
     let along = || scene.camera.viewpoint + ray.w.to_f64() * (unit / hit.inverse.to_f64());
-    match scene.objects[hit.object].shape {
-        Shape::Plane { normal, point, .. } => {
+    let shape = &scene.objects[hit.object].shape;
+    match *shape {
+        Shape::Plane { .. } | Shape::Triangle(_) => {
             let mut at = along();
-            for axis in 0..3 {
-                if (0..3).all(|other| other == axis || normal[other] == 0.0) {
-                    at[axis] = point[axis];
-                }
-            }
-            at
-        }
-        Shape::Triangle(Triangle { vertices, .. }) => {
-            let mut at = along();
-            for axis in 0..3 {
-                if vertices.iter().all(|v| v[axis] == vertices[0][axis]) {
-                    at[axis] = vertices[0][axis];
-                }
+            if let Some((axis, coordinate)) = flat_axis(shape) {
+                at[axis] = coordinate;
             }
             at
         }

@@ -144,12 +144,8 @@ fn emissivity<R: Real>(
     // f is reach over both; two numbers that are > 0 do not cancel.
     let along = reach / (reach + beyond);
     let crossing = light.location + (point.position - light.location) * along;
-    let rectangle = &projector.picture.rectangle;
-    let coordinates = rectangle.coordinates(crossing);
-    for (p, length) in coordinates.into_iter().zip(rectangle.dimensions) {
-        if !p.non_negative()? || !(length - p).non_negative()? {
-            return Ok(None);
-        }
+    if !projector.picture.rectangle.holds(crossing)? {
+        return Ok(None);
     }
     let texel = texel(scene, &projector.picture, crossing)?;
     Ok(Some(light.emissivity.each(texel)))

@@ -77,11 +77,8 @@ pub fn plane_hits_from<R: Real>(
             }
         }
         Extent::Rectangle(rectangle) => {
-            let coordinates = rectangle.coordinates(position);
-            for (p, length) in coordinates.into_iter().zip(rectangle.dimensions) {
-                if !p.non_negative()? || !(length - p).non_negative()? {
-                    return Ok(None);
-                }
+            if !rectangle.holds(position)? {
+                return Ok(None);
             }
         }
     }

@@ -79,18 +79,8 @@ pub fn find_closest_object<R: Real>(
     };
     let triangle = |closest: &mut Option<Hit<R>>, index: usize| -> Result<(), Undecided> {
         let mark = R::mark();
-        let made;
-        let triangle = match scene.triangles.get(index) {
-            Some(triangle) => triangle,
-            None => {
-                made = scene.make_triangle(index);
-                match &made {
-                    Some(triangle) => triangle,
-                    None => return Err(Undecided),
-                }
-            }
-        };
-        let hit = plane_hits(triangle, ray)?.map(|inverse| Hit {
+        let triangle = scene.triangle(index).ok_or(Undecided)?;
+        let hit = plane_hits(&triangle, ray)?.map(|inverse| Hit {
             inverse,
             object: triangle.object,
             index,

@@ -101,7 +101,7 @@ pub fn hits_from<R: Real>(
         Ok(reach)
     };
     let mut treated = 0;
-    if let Some(bvh) = &world.bvh {
+    if let Some(bvh) = &world.sphere_tree {
         bvh_hits(bvh, base, dir, before_spheres, &mut sphere)?;
         treated = bvh.len;
     }

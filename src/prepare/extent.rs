@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::real::rational::{Ratio, abs, cross, dot, ratio, ratio3, two_to};
-use crate::real::{Real, V3};
+use crate::real::{Real, Undecided, V3};
 use crate::scene;
 
 /// Where a plane ends: straight sides all around, or nowhere.
@@ -75,6 +75,17 @@ impl<R: Real> Rectangle<R> {
                 R::exact(rectangle.dimensions.y) * unit,
             ],
         }
+    }
+
+    /// Whether a point of the plane is within the sides; these belong to the rectangle.
+    pub fn holds(&self, position: V3<R>) -> Result<bool, Undecided> {
+        let coordinates = self.coordinates(position);
+        for (p, length) in coordinates.into_iter().zip(self.dimensions) {
+            if !p.non_negative()? || !(length - p).non_negative()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// The coordinates of a point of the plane along the sides.

@@ -1,5 +1,6 @@
 //! A scene made ready: the top of `prepare`, over all its parts.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -241,10 +242,15 @@ impl<R: Real> Prepared<R> {
         self.on_demand.as_ref()?.primary(&self.camera, index)
     }
 
-    /// A triangle that is not in `triangles`.
-    pub fn make_triangle(&self, index: usize) -> Option<Plane<R>> {
-        self.on_demand
-            .as_ref()?
-            .primary_triangle(&self.camera, index)
+    /// The triangle of this number; made now where it is not in `triangles`.
+    pub fn triangle(&self, index: usize) -> Option<Cow<'_, Plane<R>>> {
+        match self.triangles.get(index) {
+            Some(triangle) => Some(Cow::Borrowed(triangle)),
+            None => {
+                let on_demand = self.on_demand.as_ref()?;
+                let made = on_demand.primary_triangle(&self.camera, index)?;
+                Some(Cow::Owned(made))
+            }
+        }
     }
 }

@@ -96,7 +96,7 @@ impl<R: Real> Surface<R> {
         match (&object.shape, object.surface) {
             (_, scene::Surface::Plain) => Self::Plain,
             (
-                &Shape::Plane { normal, point, .. },
+                &Shape::Plane { normal, .. },
                 scene::Surface::Tiled {
                     dimension,
                     altmaterial,
@@ -107,18 +107,18 @@ impl<R: Real> Surface<R> {
                 let camera = &scene.camera;
                 Self::Tiled(Box::new(match xdir {
                     None => {
-                        let flat = flat_axis(normal, point);
+                        let flat = flat_axis(&object.shape);
                         Tiled::along_axes(camera, flat, dimension, materials)
                     }
                     Some(xdir) => Tiled::along_rows(camera, normal, xdir, dimension, materials),
                 }))
             }
-            (&Shape::Plane { normal, point, .. }, scene::Surface::Procedural { shader }) => {
-                let flat = flat_axis(normal, point);
+            (&Shape::Plane { point, .. }, scene::Surface::Procedural { shader }) => {
+                let flat = flat_axis(&object.shape);
                 Self::Pplane(Box::new(Pplane::new(&scene.camera, flat, point, shader)))
             }
             (Shape::Triangle(triangle), scene::Surface::Procedural { shader }) => {
-                let flat = triangle::flat_axis(triangle);
+                let flat = flat_axis(&object.shape);
                 let point = triangle.vertices[0];
                 Self::Pplane(Box::new(Pplane::new(&scene.camera, flat, point, shader)))
             }
@@ -259,12 +259,17 @@ impl<R: Real> Pplane<R> {
     }
 }
 
-/// The axis that a plane is perpendicular to, and the coordinate that all its points share, if there is one.
-fn flat_axis(normal: DVec3, point: DVec3) -> Option<(usize, f64)> {
-    let is_flat = |axis: usize| (0..3).all(|i| i == axis || normal[i] == 0.0);
-    (0..3)
-        .find(|&axis| is_flat(axis))
-        .map(|axis| (axis, point[axis]))
+/// The axis that a planar shape is perpendicular to, and the coordinate that all its points share, if there is one.
+pub fn flat_axis(shape: &Shape) -> Option<(usize, f64)> {
+    match shape {
+        Shape::Plane { normal, point, .. } => {
+            let is_flat = |axis: usize| (0..3).all(|i| i == axis || normal[i] == 0.0);
+            let axis = (0..3).find(|&axis| is_flat(axis))?;
+            Some((axis, point[axis]))
+        }
+        Shape::Triangle(triangle) => triangle::flat_axis(triangle),
+        Shape::Sphere { .. } | Shape::Quadric(_) => None,
+    }
 }
 
 /// The coordinate along this axis, if all points share it.

@@ -33,7 +33,7 @@ pub struct World<R> {
     /// All quadrics that a ray can hit, in file order.
     pub quadrics: Arc<Vec<Quadric<R>>>,
     /// The tree over the spheres, if they are many.
-    pub bvh: Option<Arc<Bvh>>,
+    pub sphere_tree: Option<Arc<Bvh>>,
     /// The tree over the triangles, if they are many.
     pub triangle_tree: Option<Arc<Bvh>>,
     /// The objects that are in it, in its order.
@@ -80,7 +80,7 @@ impl<R: Real> World<R> {
         );
         world.triangle_tree = triangle_tree.map(Arc::new);
         world.quadrics = Arc::clone(quadrics);
-        world.bvh = bvh::build(&mut world.spheres).map(Arc::new);
+        world.sphere_tree = bvh::build(&mut world.spheres).map(Arc::new);
         let mut places = vec![0; scene.objects.len()];
         for (place, plane) in world.planes.iter().enumerate() {
             places[plane.object] = place;
@@ -110,7 +110,7 @@ impl<R: Real> World<R> {
         let (groups, places) = (Arc::clone(&before.groups), Arc::clone(&before.places));
         Self {
             quadrics: Arc::clone(quadrics),
-            bvh: before.bvh.clone(),
+            sphere_tree: before.sphere_tree.clone(),
             triangle_tree: before.triangle_tree.clone(),
             on_demand: on_demand.cloned(),
             brightest: Arc::clone(&before.brightest),
@@ -146,7 +146,7 @@ impl<R: Real> World<R> {
             planes: Vec::new(),
             spheres: Vec::new(),
             quadrics: Arc::default(),
-            bvh: None,
+            sphere_tree: None,
             triangle_tree: None,
             tree_objects: Arc::clone(&tree_objects),
             on_demand: None,
@@ -236,7 +236,7 @@ impl<R: Real> World<R> {
 
     /// Whether spheres or triangles are so many that they have a tree.
     pub fn has_tree(&self) -> bool {
-        self.bvh.is_some() || self.triangle_tree.is_some()
+        self.sphere_tree.is_some() || self.triangle_tree.is_some()
     }
 
     /// What spheres and triangles are made from one by one in another number type.

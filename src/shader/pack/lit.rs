@@ -52,7 +52,7 @@ impl Lit {
         projectors: &[Option<Projector>],
     ) -> Self {
         let used = || scene.materials.iter().map(|&index| &scene.palette[index]);
-        let in_tree = world.bvh.as_ref().map_or(0, |bvh| bvh.len);
+        let in_tree = world.sphere_tree.as_ref().map_or(0, |bvh| bvh.len);
         let (planes, spheres) = (&world.planes, &world.spheres);
         let mut places = vec![0; scene.surfaces.len()];
         for (place, plane) in (0..).zip(planes) {

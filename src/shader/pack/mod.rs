@@ -426,7 +426,7 @@ impl Trees {
     fn new(world: Option<&prepare::World<Bounded>>) -> Self {
         let mut trees = Self::default();
         let Some(world) = world else { return trees };
-        if let Some(tree) = &world.bvh {
+        if let Some(tree) = &world.sphere_tree {
             trees.add(tree, 0);
         }
         if let Some(tree) = &world.triangle_tree {
