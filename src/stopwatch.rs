@@ -45,13 +45,11 @@ pub enum Phase {
     Emit,
     /// Giving back the memory of scene, shader and buffers.
     Release,
-    /// Closing the device.
-    Close,
 }
 
 impl Phase {
     /// Every phase, in about the order in which they come; each stands at its own number.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 17] = [
         Self::Instance,
         Self::Device,
         Self::Selftest,
@@ -69,7 +67,6 @@ impl Phase {
         Self::Trace,
         Self::Emit,
         Self::Release,
-        Self::Close,
     ];
 
     /// The word for it in reports.
@@ -92,7 +89,6 @@ impl Phase {
             Self::Trace => "trace",
             Self::Emit => "emit",
             Self::Release => "release",
-            Self::Close => "close",
         }
     }
 }

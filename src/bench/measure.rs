@@ -199,15 +199,10 @@ impl Subject<'_> {
             Err(render::Error::Gpu(error)) => return Err(error.into()),
             report => report?,
         };
-        let opening: f64 = [
-            Phase::Instance,
-            Phase::Device,
-            Phase::Selftest,
-            Phase::Close,
-        ]
-        .map(|phase| report.seconds.phases.get(phase))
-        .iter()
-        .sum();
+        let opening: f64 = [Phase::Instance, Phase::Device, Phase::Selftest]
+            .map(|phase| report.seconds.phases.get(phase))
+            .iter()
+            .sum();
         Ok(Frame {
             picture: Picture { width, height, rgb },
             verdicts,

@@ -234,11 +234,14 @@ impl Gpu {
 
 /// Name and driver, for people.
 pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
-    let driver = driver(info);
+    full_name(&info.name, &driver(info))
+}
+
+pub(super) fn full_name(adapter: &str, driver: &str) -> String {
     if driver.is_empty() {
-        info.name.clone()
+        adapter.to_owned()
     } else {
-        format!("{} [{driver}]", info.name)
+        format!("{adapter} [{driver}]")
     }
 }
 

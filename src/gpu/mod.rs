@@ -20,12 +20,14 @@ pub enum GpuError {
     /// No adapter at all.
     #[error("no GPU adapter found")]
     NoAdapter,
-    /// None whose name holds what `--adapter` asks for.
-    #[error("no GPU adapter's name contains `{wanted}`; there {}: {}",
+    /// None whose name holds what `--adapter` or the environment asks for.
+    #[error("no GPU adapter's name contains `{wanted}`, as {asker} asks; there {}: {}",
         if .found.len() == 1 { "is" } else { "are" }, .found.join(", "))]
     NoSuchAdapter {
         /// What was asked for.
         wanted: String,
+        /// By what: `--adapter`, or the environment's variable.
+        asker: &'static str,
         /// The adapters that there are.
         found: Vec<String>,
     },

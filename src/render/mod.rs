@@ -155,7 +155,7 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     let choice = choose(settings, &mut watch, |watch| {
         let adapter = adapters::find(settings.adapter.as_deref());
         watch.lap(Phase::Instance);
-        let gpu = adapter.and_then(|adapter| Gpu::open(&adapter));
+        let gpu = adapter.and_then(|adapter| adapters::shared_on(&adapter));
         watch.lap(Phase::Device);
         gpu
     })?;
@@ -165,10 +165,6 @@ pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result
     };
     let (threads, done) = run(scene, settings, &live, &|| false, emit, &mut watch)?;
     watch.lap(Phase::Release);
-    if let Choice::Gpu(gpu) = choice {
-        drop(gpu);
-        watch.lap(Phase::Close);
-    }
     Ok(Report::new(scene, settings, threads, done, &watch))
 }
 

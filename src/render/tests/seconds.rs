@@ -94,7 +94,7 @@ fn all_time_of_a_picture_is_in_the_phases_of_its_report() {
                 let name = format!("lit: {lit}, {samples} samples, {precision:?}");
                 let timed = |backend| timed(&scene, &on(backend));
                 timed(Backend::Cpu).consists_of(&name, &ON_CPU);
-                let phases = [&OPENING[..], &ON_GPU, &[Close]].concat();
+                let phases = [&OPENING[..], &ON_GPU].concat();
                 timed(Backend::Gpu).consists_of(&name, &phases);
             }
         }
@@ -103,7 +103,7 @@ fn all_time_of_a_picture_is_in_the_phases_of_its_report() {
 
 #[test]
 fn so_is_that_of_a_picture_on_an_open_device() {
-    let gpu = adapters::open(None).unwrap();
+    let gpu = adapters::shared(None).unwrap();
     let timed = Timed::new(|| {
         render_live(
             &hard_scene(),
@@ -120,6 +120,6 @@ fn so_is_that_of_a_picture_that_the_cpu_renders_again() {
     tamper_with(&[checked(16..24)], SURE);
     let timed = timed(&scene(), &settings(Backend::Gpu));
     tamper_with(&[], SURE);
-    let phases = [&OPENING[..], &ON_GPU, &[Trace, Emit, Close]].concat();
+    let phases = [&OPENING[..], &ON_GPU, &[Trace, Emit]].concat();
     timed.consists_of("revoked", &phases);
 }
