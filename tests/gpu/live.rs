@@ -1,6 +1,7 @@
 //! Pictures rendered for a window: on a device that is open, onto a canvas on the GPU, given up when nobody wants them.
 //! Needs an adapter, and fails without one.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use plumb::certify::DecidedBy;
@@ -28,8 +29,8 @@ fn scene(name: &str, pixeldim: [u32; 2]) -> Scene {
     scene
 }
 
-fn open() -> Gpu {
-    adapters::open(None).unwrap_or_else(|error| panic!("{error}"))
+fn open() -> Arc<Gpu> {
+    adapters::shared(None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The words of a canvas.
