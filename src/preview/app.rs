@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Rect, Ui};
 
+use super::canvases::Canvases;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
 use super::keys;
@@ -26,8 +27,7 @@ use super::side::{self, Side};
 use super::status::{self, Line};
 use super::watch::Watcher;
 use super::worker::{self, PreviewPicture, Worker};
-use super::{Options, inspector};
-use crate::gpu::canvas::Scatter;
+use super::{Devices, Options, inspector};
 use crate::gpu::device::Gpu;
 use crate::scene::EntityId;
 
@@ -61,7 +61,10 @@ impl Teller {
 
 /// The window.
 pub(super) struct App {
+    /// The device that renders.
     gpu: Arc<Gpu>,
+    /// The device that draws the window; perhaps the same.
+    window: Arc<Gpu>,
     options: Options,
     shared: SharedSession,
     events: Receiver<Event>,
@@ -104,22 +107,22 @@ impl App {
     /// Sets the window up on its device, and begins to watch, read and render.
     pub(super) fn new(
         creation: &eframe::CreationContext<'_>,
-        gpu: Arc<Gpu>,
+        Devices { gpu, window }: Devices,
         options: Options,
     ) -> anyhow::Result<Self> {
         let state = creation.wgpu_render_state.as_ref();
         screen::install(state.ok_or_else(|| anyhow::anyhow!("egui does not draw with wgpu"))?);
-        gpu.check()?;
+        window.check()?;
         let (sender, events) = mpsc::channel();
         let teller = Teller {
             events: sender,
             context: creation.egui_ctx.clone(),
         };
         let tell = teller.clone();
-        let scatter = Scatter::new(&gpu)?;
+        let canvases = Canvases::new(&gpu, &window)?;
         let worker = Worker::new(
             Arc::clone(&gpu),
-            scatter,
+            canvases,
             options.settings.clone(),
             move |news| tell.tell(Event::Rendered(news)),
         )?;
@@ -142,6 +145,7 @@ impl App {
         Ok(Self {
             shared,
             gpu,
+            window,
             options,
             events,
             teller,

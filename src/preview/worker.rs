@@ -10,11 +10,13 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::adaptive_resolution::AdaptiveResolution;
+use super::canvases::Canvases;
 use super::latest::{LatestReceiver, LatestSender, latest};
+use super::priority;
 use crate::edit::Changes;
 use crate::frame::DecidedBy;
 use crate::gpu::GpuError;
-use crate::gpu::canvas::{Canvas, Scatter};
+use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
 use crate::render::{self, Backend, Live, Precision, Report, Settings, render_live};
@@ -113,7 +115,7 @@ impl Worker {
     /// If the thread cannot be started.
     pub(super) fn new(
         gpu: Arc<Gpu>,
-        scatter: Scatter,
+        canvases: Canvases,
         settings: Settings,
         tell: impl FnMut(News) + Send + 'static,
     ) -> std::io::Result<Self> {
@@ -122,17 +124,19 @@ impl Worker {
         progress.set(1000);
         let work = Work {
             gpu,
-            scatter,
+            canvases,
             settings,
             receiver,
             progress: Arc::clone(&progress),
             resolution: AdaptiveResolution::default(),
             compiled: Compiled::default(),
-            canvases: Vec::new(),
         };
         let thread = std::thread::Builder::new()
             .name("render".into())
-            .spawn(move || work.run(tell))?;
+            .spawn(move || {
+                priority::lower();
+                work.run(tell);
+            })?;
         Ok(Self {
             wishes: Arc::new(wishes),
             thread: Some(thread),
@@ -162,14 +166,12 @@ impl Drop for Worker {
 /// The worker's own side.
 struct Work {
     gpu: Arc<Gpu>,
-    scatter: Scatter,
+    canvases: Canvases,
     settings: Settings,
     receiver: LatestReceiver<Wish>,
     progress: Arc<Progress>,
     resolution: AdaptiveResolution,
     compiled: Compiled,
-    /// Canvases to be used again once nobody shows them.
-    canvases: Vec<Arc<Canvas>>,
 }
 
 /// A wish that is being worked on.
@@ -209,7 +211,7 @@ impl Work {
         } else {
             Arc::new(wish.changes.apply(&wish.scene))
         };
-        let most = MOST.min(Canvas::most(&self.gpu));
+        let most = MOST.min(self.canvases.most());
         let whole = scene.camera.pixeldim;
         let task = PreviewTask {
             number,
@@ -269,7 +271,7 @@ impl Work {
         let small = sized(&task.scene, smaller);
         let scene = small.as_ref().unwrap_or(&task.scene);
         let [width, height] = scene.camera.pixeldim;
-        let canvas = self.canvas([width, height])?;
+        let begun = self.canvases.begin([width, height])?;
         let mut settings = Settings {
             precision,
             backend: Backend::Auto,
@@ -279,7 +281,7 @@ impl Work {
         let stop = || stop(self.receiver.is_old(task.number));
         let live = Live {
             gpu: &self.gpu,
-            canvas: Some(&canvas),
+            canvas: begun.as_deref(),
             compiled: Some(&self.compiled),
             dispatch_seconds: DISPATCH,
             stop: &stop,
@@ -290,7 +292,7 @@ impl Work {
             let mut verdicts = Vec::with_capacity(pixels);
             let mut trouble = None;
             let rendered = render_live(scene, &settings, &live, &mut |band| {
-                if let Err(error) = self.scatter.put(&self.gpu, &canvas, band) {
+                if let Err(error) = self.canvases.put(begun.as_deref(), band) {
                     trouble = Some(error);
                     return Err(std::io::Error::other("the GPU's fault"));
                 }
@@ -305,7 +307,7 @@ impl Work {
                     number: task.number,
                     scene: Arc::clone(&task.scene),
                     whole: task.whole,
-                    canvas,
+                    canvas: self.canvases.end(begun, [width, height], &rgb, &verdicts)?,
                     rgb,
                     verdicts,
                     precision,
@@ -324,20 +326,6 @@ impl Work {
                 (Err(error), None) => Err(Unmade::Failed(error.to_string())),
             };
         }
-    }
-
-    /// A canvas that nobody shows.
-    fn canvas(&mut self, size: [u32; 2]) -> Result<Arc<Canvas>, GpuError> {
-        // Canvases of another size are dropped, as they will not be used soon; those on the screen are kept.
-        self.canvases
-            .retain(|canvas| canvas.size == size || Arc::strong_count(canvas) > 1);
-        let mut free = self.canvases.iter().filter(|canvas| canvas.size == size);
-        if let Some(canvas) = free.find(|canvas| Arc::strong_count(canvas) == 1) {
-            return Ok(Arc::clone(canvas));
-        }
-        let canvas = Arc::new(Canvas::new(&self.gpu, size)?);
-        self.canvases.push(Arc::clone(&canvas));
-        Ok(canvas)
     }
 }
 
