@@ -34,6 +34,9 @@ use crate::scene::EntityId;
 /// What is said stays in the status line for so long.
 const SAID: Duration = Duration::from_secs(12);
 
+/// Figures that change are drawn anew so often.
+const FIGURES: Duration = Duration::from_millis(250);
+
 /// What other threads tell the window.
 enum Event {
     /// Something is to be said, or to be shown of the file.
@@ -279,7 +282,7 @@ impl App {
         };
         if line.share.is_some() || frames.is_some() || said.is_some() {
             // The line is drawn again soon, so that its figures do not stand still.
-            ui.ctx().request_repaint_after(Duration::from_millis(100));
+            ui.ctx().request_repaint_after(FIGURES);
         }
         if status::show(ui, picture, &line) {
             self.help_open = true;
