@@ -77,7 +77,7 @@ pub enum Candidates {
 /// # Errors
 /// If there is none.
 pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, GpuError> {
-    let all = enumerate();
+    let all = enumerate(instance());
     if wanted.is_none() {
         let is_hardware = |adapter: &&wgpu::Adapter| {
             !is_software(&adapter.get_info()) && problem(adapter).is_none()

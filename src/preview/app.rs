@@ -259,9 +259,6 @@ impl App {
         let frames = self.frames();
         let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
         let picture = self.picture.as_ref();
-        let wished = self.shared.lock().wished;
-        let working =
-            picture.map_or(wished > 0, |picture| picture.number != wished) && self.failed.is_none();
         let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
         let scale = f64::from(ui.ctx().pixels_per_point());
         let placed = self.area.map(|rect| {
@@ -270,8 +267,7 @@ impl App {
                 .place(picture::area(rect, scale), size)
         });
         let line = Line {
-            working,
-            share: self.worker.progress.share(),
+            doing: self.doing(),
             zoom: placed.map_or(1.0, |placed| placed.zoom),
             frames,
             pixel: self.over.and_then(|pixel| {
@@ -280,13 +276,30 @@ impl App {
             }),
             said: said.map(|(text, _)| text.clone()),
         };
-        if line.share.is_some() || frames.is_some() || said.is_some() {
+        if line.doing.is_some() || frames.is_some() || said.is_some() {
             // The line is drawn again soon, so that its figures do not stand still.
             ui.ctx().request_repaint_after(FIGURES);
         }
         if status::show(ui, picture, &line) {
             self.help_open = true;
         }
+    }
+
+    /// What is being done, if anything.
+    fn doing(&self) -> Option<String> {
+        let state = self.shared.lock();
+        if state.wished == 0 {
+            // Nothing is wished for while there is no scene; what is wrong with the file is said elsewhere.
+            return state
+                .session
+                .trouble
+                .is_none()
+                .then(|| "reading the scene".into());
+        }
+        let shown = self.picture.as_ref().map(|picture| picture.number);
+        let behind = shown != Some(state.wished) && self.failed.is_none();
+        let words = self.worker.progress.doing().words();
+        words.or_else(|| behind.then(|| "rendering next".into()))
     }
 
     fn middle(&mut self, ui: &mut Ui) {
@@ -299,10 +312,11 @@ impl App {
                 self.area = Some(area);
                 self.take_mouse(&mouse);
             }
-            None if trouble.is_none() && self.failed.is_none() => {
-                ui.centered_and_justified(|ui| ui.label("reading the scene …"));
+            None => {
+                if let (Some(doing), None, None) = (self.doing(), &trouble, &self.failed) {
+                    ui.centered_and_justified(|ui| ui.label(format!("{doing} …")));
+                }
             }
-            None => {}
         }
         if let Some(trouble) = &trouble {
             overlay::trouble(ui, rect, trouble, self.picture.is_some());

@@ -19,6 +19,7 @@ mod latest;
 mod overlay;
 mod picture;
 mod priority;
+mod progress;
 mod save;
 mod screen;
 mod session;
