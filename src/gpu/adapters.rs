@@ -63,7 +63,7 @@ pub fn list() -> Vec<AdapterSummary> {
         }
         summary
     };
-    enumerate().iter().map(tested).collect()
+    enumerate(instance()).iter().map(tested).collect()
 }
 
 /// What [`VARIABLE`] says, if it says anything.
@@ -77,7 +77,7 @@ pub fn wanted_by_variable() -> Option<String> {
 /// # Errors
 /// If there is none.
 pub fn find(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
-    choose(&enumerate(), wanted).cloned()
+    choose(&enumerate(instance()), wanted).cloned()
 }
 
 pub(super) fn choose<'a>(
@@ -150,10 +150,10 @@ impl Shared {
 }
 
 /// A device for a window, with what else a window is made from.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Opened {
     /// The device.
-    pub gpu: Gpu,
+    pub gpu: Arc<Gpu>,
     /// What adapters and surfaces come from.
     pub instance: wgpu::Instance,
     /// The adapter that it was opened on.
@@ -167,29 +167,56 @@ pub struct Opened {
 pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
     let adapter = find(wanted)?;
     Ok(Opened {
-        gpu: Gpu::open(&adapter)?,
+        gpu: Arc::new(Gpu::open(&adapter)?),
         instance: instance().clone(),
         adapter,
     })
 }
 
-/// The process's one instance. It is never dropped, since that unloads the driver, and NVIDIA's can be loaded about
-/// thirty times in a process only: the next instance finds no adapter, or the process dies. So a process may open as
-/// many devices, one after the other, as it likes; and only the first of them waits for the driver.
-fn instance() -> &'static wgpu::Instance {
+/// The device that draws the window in which the pictures of `renderer` are shown, which was opened for the same
+/// `wanted`.
+///
+/// On a GPU that is the same device: it changes from one work to the next in a moment, and pictures need not be moved.
+/// A driver that computes on the CPU works off what it is given in the order in which it came, and keeps whoever hands
+/// something in waiting meanwhile. There the window has a device of its own, on an instance of its own, since a driver's
+/// threads belong to its instance: neither queue nor threads are shared, and the system's scheduler decides who goes
+/// first.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_beside(renderer: &Opened, wanted: Option<&str>) -> Result<Opened, GpuError> {
+    if renderer.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
+        return Ok(renderer.clone());
+    }
     static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
-    INSTANCE.get_or_init(|| {
-        wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::PRIMARY,
-            flags: wgpu::InstanceFlags::empty().with_env(),
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        })
+    let instance = INSTANCE.get_or_init(new_instance);
+    let adapter = choose(&enumerate(instance), wanted)?.clone();
+    Ok(Opened {
+        gpu: Arc::new(Gpu::open(&adapter)?),
+        instance: instance.clone(),
+        adapter,
+    })
+}
+
+/// The instance that all rendering is done on. It is never dropped, since that unloads the driver, and NVIDIA's can be
+/// loaded about thirty times in a process only: the next instance finds no adapter, or the process dies. So a process
+/// may open as many devices, one after the other, as it likes; and only the first of them waits for the driver.
+pub(super) fn instance() -> &'static wgpu::Instance {
+    static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
+    INSTANCE.get_or_init(new_instance)
+}
+
+fn new_instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        flags: wgpu::InstanceFlags::empty().with_env(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
     })
 }
 
 /// All adapters, those that plumb prefers first.
-pub(super) fn enumerate() -> Vec<wgpu::Adapter> {
-    let mut adapters = pollster::block_on(instance().enumerate_adapters(wgpu::Backends::PRIMARY));
+pub(super) fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     // The sort is stable, so that adapters of equal rank stay in the system's order.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     adapters

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::GpuError;
-use super::adapters::{choose, enumerate, problem, wanted_by_variable};
+use super::adapters::{choose, enumerate, instance, problem, wanted_by_variable};
 
 /// Adapters that a picture may be made on together.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub fn is_named(wanted: Option<&str>) -> bool {
 /// # Errors
 /// If there is none.
 pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, GpuError> {
-    let all = enumerate();
+    let all = enumerate(instance());
     let named = is_named(wanted);
     if !named {
         let is_usable = |adapter: &&wgpu::Adapter| {
