@@ -206,13 +206,19 @@ impl<'a> RenderCommand<'a> {
     fn open(&self, target: &Target, format: Format, settings: &Settings) -> Result<Outputs> {
         let [width, height] = self.scene.camera.pixeldim;
         let rows = settings.rows_of(height).len() as u32;
-        let open = |target: &Target, format| {
-            PictureFile::open(target, format, width, rows, self.metadata(settings))
+        let open = |target: &Target, format, hashed| {
+            PictureFile::open(
+                target,
+                format,
+                [width, rows],
+                self.metadata(settings),
+                hashed,
+            )
         };
         Ok(Outputs {
-            picture: open(target, format)?,
+            picture: open(target, format, self.options.json)?,
             verdicts: match self.verdicts(target)? {
-                Some((target, format)) => Some(open(&target, format)?),
+                Some((target, format)) => Some(open(&target, format, false)?),
                 None => None,
             },
         })
@@ -324,7 +330,7 @@ impl<'a> RenderCommand<'a> {
             output: target.to_string(),
             format: format.to_string().to_lowercase(),
             bytes: finished.bytes,
-            sha256: &finished.sha256,
+            sha256: finished.sha256.as_deref().unwrap_or_default(),
             report,
         };
         let text = serde_json::to_string_pretty(&json)? + "\n";
