@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
+use plumb::cores;
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::ExactTracer;
 use plumb::diagnostic::visible_text;
@@ -69,6 +70,7 @@ struct JsonReport<'a> {
 
 /// Renders a scene file.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
+    start_threads(&args.options);
     let name = source::name(&args.scene);
     let scene = source::load(&args.scene)?;
     let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
@@ -80,6 +82,7 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
     if io::stdin().is_terminal() {
         return Ok(Answer::Nothing);
     }
+    start_threads(options);
     let Some(scene) = source::load_stdin()? else {
         return Ok(Answer::Nothing);
     };
@@ -92,6 +95,14 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         say::talk(&String::from_utf8_lossy(&listing));
     }
     command.run()
+}
+
+/// Starts as many threads as were asked for, which the scene is read with and the picture compressed. If the system
+/// refuses they are done without, and the rendering tells it.
+fn start_threads(options: &RenderOptions) {
+    if options.threads.is_some() {
+        let _ = cores::start(options.threads);
+    }
 }
 
 impl<'a> RenderCommand<'a> {

@@ -199,7 +199,7 @@ fn start_threads(settings: &Settings) -> Result<(), Error> {
     if settings.threads.is_some() {
         return Ok(());
     }
-    cores::start().map_err(|error| no_threads(&error))
+    cores::start(None).map_err(|error| no_threads(&error))
 }
 
 fn no_threads(error: &rayon::ThreadPoolBuildError) -> Error {
