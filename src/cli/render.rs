@@ -4,6 +4,7 @@
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -14,7 +15,7 @@ use plumb::diagnostic::visible_text;
 use plumb::files::is_stream;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
-use plumb::render::{self, Backend, PixelFault, Report, Settings};
+use plumb::render::{self, Backend, Devices, PixelFault, Report, Settings};
 use plumb::scene::{Scene, list_model, remarks};
 use serde::Serialize;
 
@@ -103,6 +104,13 @@ fn start_threads(options: &RenderOptions) {
     if options.threads.is_some() {
         let _ = cores::start(options.threads);
     }
+}
+
+/// The process's devices. They are never closed, and the process does not end by returning from `main` (see `end`): who
+/// has a picture does not wait for a driver that may still be loading.
+fn devices() -> &'static Devices {
+    static DEVICES: OnceLock<Devices> = OnceLock::new();
+    DEVICES.get_or_init(Devices::new)
 }
 
 impl<'a> RenderCommand<'a> {
@@ -259,7 +267,7 @@ impl<'a> RenderCommand<'a> {
         let [_, height] = self.scene.camera.pixeldim;
         let rows = settings.rows_of(height);
         let mut progress = Progress::new(rows.len() as u64, self.talks());
-        let rendered = render::render(&self.scene, settings, &mut |band| {
+        let rendered = render::render_with(&self.scene, settings, devices(), &mut |band| {
             outputs.write(band)?;
             progress.add(band.rows.len() as u64);
             Ok(())
