@@ -143,15 +143,7 @@ impl Assembly {
                     beam,
                 });
             }
-            EntityKind::Object(class) => {
-                let (shape, surface) = draft.shape(class);
-                self.objects.push(Object {
-                    name: draft.name,
-                    material: draft.material,
-                    shape,
-                    surface,
-                });
-            }
+            EntityKind::Object(class) => self.objects.push(draft.object(class)),
         }
     }
 
@@ -177,6 +169,17 @@ impl Assembly {
 }
 
 impl Draft {
+    /// The object that this is.
+    pub(super) fn object(self, class: Class) -> Object {
+        let (shape, surface) = self.shape(class);
+        Object {
+            name: self.name,
+            material: self.material,
+            shape,
+            surface,
+        }
+    }
+
     fn shape(&self, class: Class) -> (Shape, Surface) {
         let sphere = Shape::Sphere {
             center: self.center.into(),

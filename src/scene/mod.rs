@@ -8,6 +8,7 @@
 //! Beside it, `places` tells where in the text what is in the scene stands.
 
 mod build;
+mod bulk;
 mod bytes;
 mod check;
 mod common_mistakes;
