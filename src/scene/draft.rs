@@ -108,21 +108,9 @@ impl Assembly {
     pub(super) fn add(&mut self, kind: EntityKind, draft: Draft) {
         match kind {
             EntityKind::Camera => {
-                self.camera.get_or_insert(Camera {
-                    name: draft.name,
-                    pixeldim: draft.pixeldim.map(|pixels| pixels as u32),
-                    worlddim: draft.worlddim.into(),
-                    viewpoint: draft.viewpoint.into(),
-                });
+                self.camera.get_or_insert(draft.into_camera());
             }
-            EntityKind::Material => self.materials.push(Material {
-                name: draft.name,
-                ambient: draft.ambient.into(),
-                diffuse: draft.diffuse.into(),
-                specular: draft.specular.into(),
-                shininess: draft.shininess[0],
-                transparency: draft.transparency[0],
-            }),
+            EntityKind::Material => self.materials.push(draft.into_material()),
             EntityKind::Texture => {
                 // A texture without a picture is an error that was reported; its place in the list stays taken.
                 let picture = draft.picture.unwrap_or_else(|| TexturePicture::unread(""));
@@ -134,24 +122,8 @@ impl Assembly {
                     remark: picture.remark,
                 });
             }
-            EntityKind::Light(class) => {
-                let beam = draft.beam(class);
-                self.lights.push(Light {
-                    name: draft.name,
-                    location: draft.location.into(),
-                    emissivity: draft.emissivity.into(),
-                    beam,
-                });
-            }
-            EntityKind::Object(class) => {
-                let (shape, surface) = draft.shape(class);
-                self.objects.push(Object {
-                    name: draft.name,
-                    material: draft.material,
-                    shape,
-                    surface,
-                });
-            }
+            EntityKind::Light(class) => self.lights.push(draft.into_light(class)),
+            EntityKind::Object(class) => self.objects.push(draft.into_object(class)),
         }
     }
 
@@ -177,6 +149,46 @@ impl Assembly {
 }
 
 impl Draft {
+    pub(super) fn into_camera(self) -> Camera {
+        Camera {
+            name: self.name,
+            pixeldim: self.pixeldim.map(|pixels| pixels as u32),
+            worlddim: self.worlddim.into(),
+            viewpoint: self.viewpoint.into(),
+        }
+    }
+
+    pub(super) fn into_material(self) -> Material {
+        Material {
+            name: self.name,
+            ambient: self.ambient.into(),
+            diffuse: self.diffuse.into(),
+            specular: self.specular.into(),
+            shininess: self.shininess[0],
+            transparency: self.transparency[0],
+        }
+    }
+
+    pub(super) fn into_light(self, class: LightClass) -> Light {
+        let beam = self.beam(class);
+        Light {
+            name: self.name,
+            location: self.location.into(),
+            emissivity: self.emissivity.into(),
+            beam,
+        }
+    }
+
+    pub(super) fn into_object(self, class: Class) -> Object {
+        let (shape, surface) = self.shape(class);
+        Object {
+            name: self.name,
+            material: self.material,
+            shape,
+            surface,
+        }
+    }
+
     fn shape(&self, class: Class) -> (Shape, Surface) {
         let sphere = Shape::Sphere {
             center: self.center.into(),
