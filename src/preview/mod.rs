@@ -11,19 +11,23 @@
 
 mod adaptive_resolution;
 mod app;
+mod handles;
 mod inspect;
 mod inspector;
 mod keys;
 mod latest;
 mod overlay;
 mod picture;
+mod properties;
 mod save;
 mod screen;
+mod selection;
 mod session;
 mod shared_session;
 mod shell;
 mod side;
 mod status;
+mod undo;
 mod values;
 mod viewport;
 mod watch;
