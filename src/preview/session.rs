@@ -2,71 +2,20 @@
 //!
 //! Takes what the watcher tells and what the user does; says what is to be rendered, and writes changes into the file.
 
+mod report;
 mod saving;
+mod version;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(super) use saving::Saving;
+pub(super) use version::{News, Parsed, Version};
 
 use super::undo::{self, Direction, History, Step};
-use super::watch;
 use crate::edit::{Changes, Refused, Target, Value};
-use crate::scene::{self, EntityId, Object, Places, Scene, Surface};
-
-/// A version of the file, read and parsed.
-#[derive(Debug)]
-pub(super) struct Version {
-    /// Its text.
-    pub(super) text: Vec<u8>,
-    /// The scene, or its mistakes as they are printed.
-    pub(super) parsed: Result<Parsed, String>,
-}
-
-/// A version of the file without mistakes.
-#[derive(Debug, Clone)]
-pub(super) struct Parsed {
-    /// The scene as the file has it.
-    pub(super) scene: Arc<Scene>,
-    /// Where everything stands in the text.
-    pub(super) places: Arc<Places>,
-}
-
-impl Version {
-    /// Parses a text. Takes as long as that takes: not for the window's thread.
-    pub(super) fn read(path: &Path, text: Vec<u8>) -> Self {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let parsed = scene::parse(&path.display().to_string(), &text, folder)
-            .map(|scene| Parsed {
-                scene: Arc::new(scene),
-                places: Arc::new(scene::places(&text)),
-            })
-            .map_err(|mistakes| mistakes.render(false));
-        Self { text, parsed }
-    }
-}
-
-/// What is known of the file.
-#[derive(Debug)]
-pub(super) enum News {
-    /// It was written.
-    Version(Version),
-    /// It is not there any more.
-    Gone,
-    /// It cannot be read.
-    Unreadable(String),
-}
-
-impl News {
-    /// From what the watcher tells.
-    pub(super) fn read(path: &Path, news: watch::News) -> Self {
-        match news {
-            watch::News::Text(text) => Self::Version(Version::read(path, text)),
-            watch::News::Gone => Self::Gone,
-            watch::News::Unreadable(why) => Self::Unreadable(why),
-        }
-    }
-}
+use crate::scene::{self, EntityId, Object, Scene, Surface};
+use version::Origin;
 
 /// Where something stands in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -153,38 +102,6 @@ pub(super) struct Session {
     pub(super) trouble: Option<Trouble>,
     /// What became of changes and saving, for the user to read.
     pub(super) said: Vec<String>,
-}
-
-/// A version of the file that came from elsewhere.
-#[derive(Debug)]
-struct Origin {
-    scene: Arc<Scene>,
-    text: Arc<Vec<u8>>,
-    /// The same scene, of the size that was asked for.
-    sized: Arc<Scene>,
-}
-
-impl Origin {
-    fn new(scene: Arc<Scene>, text: Arc<Vec<u8>>, size: Option<[u32; 2]>) -> Self {
-        let mut sized = Arc::clone(&scene);
-        if let Some(size) = size
-            && size != sized.camera.pixeldim
-        {
-            Arc::make_mut(&mut sized).camera.pixeldim = size;
-        }
-        Self { scene, text, sized }
-    }
-
-    /// With the textures of another version that has the same text but for numbers.
-    fn set_textures(&mut self, from: &Scene) -> bool {
-        let is_new = self.scene.textures != from.textures;
-        if is_new {
-            for scene in [&mut self.scene, &mut self.sized] {
-                Arc::make_mut(scene).textures.clone_from(&from.textures);
-            }
-        }
-        is_new
-    }
 }
 
 impl Session {
@@ -274,6 +191,7 @@ impl Session {
             let scene = Arc::clone(&parsed.scene);
             self.origin = Some(Origin::new(scene, Arc::clone(&text), self.size));
             self.good = Some((parsed, text));
+            self.report_file("file");
             return true;
         };
         if let Some((_, saved)) = writing.filter(|(written, _)| **written == text) {
@@ -281,6 +199,7 @@ impl Session {
             let is_new = origin.set_textures(&parsed.scene);
             self.saved = saved;
             self.good = Some((parsed, Arc::new(text)));
+            self.report_file("saved");
             return is_new;
         }
         if **old_text == text {
@@ -306,6 +225,7 @@ impl Session {
         self.good = Some((parsed, text));
         (self.changes, self.saved) = (kept, Changes::new());
         self.generation += 1;
+        self.report_file("file");
         !same
     }
 
@@ -382,7 +302,8 @@ impl Session {
         }
         let is_new = before != self.changes;
         if is_new {
-            self.history.record(before, step);
+            let continues = self.history.record(before, step);
+            self.report(if continues { "changed on" } else { "changed" });
         }
         is_new
     }
@@ -399,6 +320,7 @@ impl Session {
             let what = undo::described(&differs, &origin.scene);
             self.said.push(format!("{} {what}", direction.done()));
         }
+        self.report(direction.done());
         true
     }
 

@@ -77,8 +77,8 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Something was changed: this is how it was before.
-    pub(super) fn record(&mut self, before: Changes, step: Step) {
+    /// Something was changed: this is how it was before. Whether that continues the last step.
+    pub(super) fn record(&mut self, before: Changes, step: Step) -> bool {
         let continues = self.last.is_some_and(|last| step.continues(last));
         self.last = Some(step);
         self.future.clear();
@@ -88,6 +88,7 @@ impl History {
                 self.past.pop_front();
             }
         }
+        continues
     }
 
     /// The changes a step before or after these; nothing where there is none. What is the same as now is no step.

@@ -83,6 +83,9 @@ impl App {
         let state = self.shared.lock();
         if let Some(good) = state.session.good() {
             self.side.selection.select(&good.scene, entity);
+            let title = entity.and_then(|entity| session::title(&good.scene, entity));
+            let (kind, name) = title.unwrap_or(("nothing", ""));
+            log::info!("selected {kind} {name}");
         }
     }
 

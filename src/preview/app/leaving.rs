@@ -72,7 +72,10 @@ impl App {
                         self.leaving = Leaving::Saving;
                         self.save_changes();
                     }
-                    Some(overlay::Leaving::Lose) => self.leaving = Leaving::Agreed,
+                    Some(overlay::Leaving::Lose) => {
+                        log::info!("closed without {lost} changes");
+                        self.leaving = Leaving::Agreed;
+                    }
                     Some(overlay::Leaving::Stay) => self.leaving = Leaving::No,
                     None => {}
                 }
