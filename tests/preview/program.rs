@@ -90,10 +90,15 @@ impl<'d> Program<'d> {
 
     /// The memory that it has, in KiB (VmRSS).
     pub(crate) fn memory(&self) -> u64 {
+        self.memory_if_there().unwrap()
+    }
+
+    /// The same; none if it has ended.
+    pub(crate) fn memory_if_there(&self) -> Option<u64> {
         let path = format!("/proc/{}/status", self.process.child.id());
-        let status = fs::read_to_string(path).unwrap();
-        let line = status.lines().find(|l| l.starts_with("VmRSS:")).unwrap();
-        line.split_whitespace().nth(1).unwrap().parse().unwrap()
+        let status = fs::read_to_string(path).ok()?;
+        let line = status.lines().find(|l| l.starts_with("VmRSS:"))?;
+        line.split_whitespace().nth(1)?.parse().ok()
     }
 
     /// Closes the window as a user does, and waits for the end.

@@ -1,7 +1,7 @@
 //! What there is to be lost, as a model beside the program: all numbers of the file, what is shown in their place, and
 //! what undo and redo lead to. Fed by the program's log, of which each line has to follow from those before.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Numbers by type, name and attribute.
 pub(crate) type Numbers = BTreeMap<String, Vec<f64>>;
@@ -22,6 +22,8 @@ pub(crate) struct Model {
     told: Option<Numbers>,
     /// What was changed last, if that was what happened last.
     last: Option<String>,
+    /// Every number that was ever shown.
+    ever: BTreeSet<String>,
     /// How often what happened.
     pub(crate) counts: BTreeMap<String, usize>,
 }
@@ -60,9 +62,8 @@ impl Model {
             "saved" => {
                 same(&shown, &before, "it was saved")?;
                 for key in differing(&file, &self.file) {
-                    // What was saved was shown then; it may have been changed since, but only by steps that are known.
-                    let was = |numbers: &Numbers| numbers.get(&key) == file.get(&key);
-                    let known = was(&before) || self.past.iter().chain(&self.future).any(was);
+                    // What was saved was shown then; since that it may have been changed.
+                    let known = self.ever.contains(&format!("{key} {:?}", file[&key]));
                     if !known {
                         return Err(format!(
                             "{key} was saved as {:?}, and never shown",
@@ -106,6 +107,12 @@ impl Model {
                 same(&shown, &step, &happened)?;
             }
             other => return Err(format!("{other} is nothing that happens")),
+        }
+        for key in differing(&shown, &before) {
+            self.ever.insert(format!(
+                "{key} {:?}",
+                shown.get(&key).map_or(&[][..], |it| it)
+            ));
         }
         (self.file, self.shown) = (file, shown);
         Ok(())
