@@ -155,8 +155,14 @@ impl<'a> PixelDecider<'a> {
         Ok((all, tally))
     }
 
-    /// Traces a whole band; with `lanes`, eight pixels at once as far as those are sure.
-    pub fn band(&self, rows: Range<u32>, lanes: Option<&Lanes>) -> Result<(Band, Tally), Halt> {
+    /// Traces a whole band; with `lanes`, eight pixels at once as far as those are sure. Gives up where `unwanted` says
+    /// that nobody wants this band any more.
+    pub fn band(
+        &self,
+        rows: Range<u32>,
+        lanes: Option<&Lanes>,
+        unwanted: &StopRequested<'_>,
+    ) -> Result<(Band, Tally), Halt> {
         let (width, top) = (self.width, rows.end - 1);
         let pixels = width * rows.len();
         let mut rgb = vec![0; 3 * pixels];
@@ -194,6 +200,9 @@ impl<'a> PixelDecider<'a> {
                             verdicts,
                         };
                         first_halt.unless_later(line * width + k * piece, || {
+                            if unwanted() {
+                                return Err(Halt::Stopped);
+                            }
                             self.strip(strip, offsets.as_deref(), lanes)
                         })
                     })

@@ -4,6 +4,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
+use super::adapters::is_software;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
@@ -22,6 +23,8 @@ pub struct Gpu {
     pub tells_version: bool,
     /// Whether kernels can be timed on the device.
     pub timestamps: bool,
+    /// Whether it is a program on the CPU.
+    pub software: bool,
     /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
     pub lanes: u32,
     /// Whether work may be handed in.
@@ -96,7 +99,7 @@ impl Gpu {
             })?;
         let trouble = Arc::new(Mutex::new(Trouble::default()));
         watch(&device, &trouble);
-        let software = info.device_type == wgpu::DeviceType::Cpu;
+        let software = is_software(&info);
         let lanes = if software {
             info.subgroup_max_size.max(SOFTWARE_LANES)
         } else {
@@ -109,6 +112,7 @@ impl Gpu {
             identity: identity(&info),
             tells_version: !info.driver_info.is_empty(),
             timestamps,
+            software,
             lanes,
             submit_gate: SubmitGate::default(),
             trouble,
@@ -249,7 +253,7 @@ pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
 }
 
 /// All that tells an adapter from others, in a line.
-fn identity(info: &wgpu::AdapterInfo) -> String {
+pub fn identity(info: &wgpu::AdapterInfo) -> String {
     let wgpu::AdapterInfo {
         name,
         vendor,

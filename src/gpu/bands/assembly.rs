@@ -124,6 +124,12 @@ pub(crate) mod tests {
         TAMPERED.set((pixels.to_vec(), verdict));
     }
 
+    /// Makes another thread get wrong what this one does.
+    pub(crate) fn carry() -> Box<dyn FnOnce() + Send> {
+        let tampered = TAMPERED.with_borrow(Clone::clone);
+        Box::new(move || TAMPERED.set(tampered))
+    }
+
     /// What [`Assembly::take`] gets under test.
     pub(super) fn tampered(rectangle: &Rectangle, bytes: &[u8], values: bool) -> Vec<u8> {
         let mut bytes = bytes.to_vec();

@@ -17,7 +17,7 @@ use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
 use crate::stopwatch::{Phase, Stopwatch};
 use assembly::Assembly;
-use plan::Plan;
+use plan::{Next, Plan};
 use slot::Slot;
 
 pub use assembly::Rendered;
@@ -51,13 +51,42 @@ pub struct Frame<'a> {
     pub canvas: Option<&'a Canvas>,
 }
 
-/// Renders the frame from the top row down, and hands each band on: while that is waited for, the next two dispatches
-/// are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so. Returns the seconds that the
-/// kernels took.
+/// What rows are to be rendered next.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Order {
+    /// These.
+    Rows(Range<u32>),
+    /// There are none at the moment.
+    Later,
+    /// There will be none any more.
+    End,
+}
+
+/// Is asked for the next rows: how many there should be, and whether there is nothing else to do than to wait for them.
+pub type NextRows<'a> = dyn FnMut(u32, bool) -> Order + 'a;
+
+/// Gives all rows, from the top down, as many as wished.
+pub fn from_the_top(mut rows: Range<u32>) -> impl FnMut(u32, bool) -> Order {
+    move |wish, _| {
+        let start = rows.end.saturating_sub(wish).max(rows.start);
+        let band = start..rows.end;
+        rows.end = start;
+        if band.is_empty() {
+            Order::End
+        } else {
+            Order::Rows(band)
+        }
+    }
+}
+
+/// Renders the rows that it is told, of those of the frame, and hands each band on: while that is waited for, the next
+/// two dispatches are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so. Returns the seconds
+/// that the kernels took.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
+    next_rows: &mut NextRows<'_>,
     stop: &StopRequested<'_>,
     watch: &mut Stopwatch,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
@@ -71,7 +100,6 @@ pub fn run(
     let mut slots: [Option<Slot>; 2] = [None, None];
     let mut plan = Plan::new(
         width,
-        rows,
         largest,
         frame.tests,
         frame.band_rows,
@@ -79,17 +107,23 @@ pub fn run(
     );
     let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
     let mut kernels = 0.0;
-    let mut next = 0;
+    let mut turn = 0;
     let mut open = 0;
     loop {
         if stop() {
             return Ok(kernels);
         }
-        let rectangle = plan.next();
+        let next = plan.next(&mut |wish| next_rows(wish, open == 0));
+        watch.lap(Phase::Held);
+        let (rectangle, end) = match next {
+            Next::Rectangle(rectangle) => (Some(rectangle), false),
+            Next::Later => (None, false),
+            Next::End => (None, true),
+        };
         let mut finished = None;
         if open == 2 || (rectangle.is_none() && open > 0) {
             // The older of the two slots is read back, while the GPU goes on with the other one's work.
-            let oldest = if open == 2 { next } else { 1 - next };
+            let oldest = if open == 2 { turn } else { 1 - turn };
             if let Some(slot) = &mut slots[oldest] {
                 let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
                 plan.took(pixels, seconds);
@@ -99,9 +133,9 @@ pub fn run(
             finished = assembly.finished();
             watch.lap(Phase::Readback);
         }
-        let done = rectangle.is_none() && open == 0;
+        let done = end && open == 0;
         if let Some(rectangle) = rectangle {
-            let slot = match &mut slots[next] {
+            let slot = match &mut slots[turn] {
                 Some(slot) => slot,
                 none => {
                     let slot = none.insert(Slot::new(gpu, pipeline, filled));
@@ -112,7 +146,7 @@ pub fn run(
             };
             slot.submit(gpu, pipeline, frame, rectangle);
             watch.lap(Phase::Submit);
-            next = 1 - next;
+            turn = 1 - turn;
             open += 1;
         }
         // The band is handed on only now, while the GPU is busy: whoever takes it may keep us waiting.

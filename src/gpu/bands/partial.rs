@@ -161,6 +161,15 @@ pub(crate) mod tests {
         ROOM.set(records);
     }
 
+    /// Makes another thread get wrong what this one does.
+    pub(crate) fn carry() -> Box<dyn FnOnce() + Send> {
+        let (room, fault) = (ROOM.get(), FAULT.get());
+        Box::new(move || {
+            ROOM.set(room);
+            FAULT.set(fault);
+        })
+    }
+
     /// Spoils the records that this thread gets.
     pub(crate) fn spoil_records(fault: Option<Fault>) {
         FAULT.set(fault);
