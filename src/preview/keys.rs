@@ -305,6 +305,41 @@ mod tests {
         assert!(harness.state().1.is_empty());
     }
 
+    /// What was typed counts before the window is closed or the file saved.
+    #[test]
+    fn keys_for_the_whole_window_leave_a_field_of_text() {
+        let mut harness = Harness::new_ui_state(
+            |ui, (number, commands): &mut (f64, Vec<(f64, Command)>)| {
+                let left = leaves_field(ui.ctx());
+                let seen = *number;
+                commands.extend(left.into_iter().map(|command| (seen, command)));
+                let label = ui.label("number");
+                let field = eframe::egui::DragValue::new(number).update_while_editing(false);
+                ui.add(field).labelled_by(label.id);
+            },
+            (4.0, Vec::new()),
+        );
+        harness.run_steps(3);
+        let node = egui_kittest::kittest::Queryable::get_by_role(
+            &harness,
+            eframe::egui::accesskit::Role::SpinButton,
+        );
+        node.click();
+        harness.run_steps(4);
+        harness.event(Event::Text("7".into()));
+        harness.run_steps(2);
+        // A key of the field's own is none of the window's.
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::Z);
+        harness.event(Event::Text("7".into()));
+        harness.run_steps(3);
+        assert_eq!(harness.state().1, []);
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::Q);
+        harness.run_steps(4);
+        assert_eq!(harness.state().1, [(4.0, Command::Quit)]);
+        assert!(harness.state().0 > 4.0, "{}", harness.state().0);
+        assert!(harness.ctx.memory(|memory| memory.focused()).is_none());
+    }
+
     #[test]
     fn the_help_names_every_key() {
         let help: String = HELP.iter().map(|(what, _)| format!(" {what} ")).collect();

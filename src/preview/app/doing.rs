@@ -34,7 +34,9 @@ impl App {
         let mut commands = std::mem::take(&mut self.deferred);
         if self.save_as.is_none() && !self.leaving.asks() {
             self.deferred = keys::leaves_field(context);
-            commands.extend(keys::pressed(context));
+            if self.deferred.is_empty() {
+                commands.extend(keys::pressed(context));
+            }
         }
         for command in commands {
             self.obey(context, command);

@@ -84,7 +84,7 @@ impl Model {
                     return Err(format!("all of these were changed at once: {changed:?}"));
                 }
                 if happened == "changed" {
-                    self.past.push(before);
+                    self.past.push(before.clone());
                     let surplus = self.past.len().saturating_sub(STEPS);
                     self.past.drain(..surplus);
                 }
@@ -103,7 +103,7 @@ impl Model {
                         break step;
                     }
                 };
-                to.push(before);
+                to.push(before.clone());
                 same(&shown, &step, &happened)?;
             }
             other => return Err(format!("{other} is nothing that happens")),
