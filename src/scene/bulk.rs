@@ -199,7 +199,7 @@ impl<'a, 't> Reader<'a, 't> {
             ..Draft::default()
         };
         self.block(entity, &mut lexer, &mut draft)?;
-        (lexer.skip_space() == end).then(|| draft.object(class))
+        (lexer.skip_space() == end).then(|| draft.into_object(class))
     }
 
     /// Reads a block behind its `{`, with its `}`.
@@ -319,5 +319,5 @@ fn doubles() -> Vec<&'static [u8]> {
 
 /// What stands for an object that could not be read, until all of them are given up.
 fn nothing() -> Object {
-    Draft::default().object(Class::Sphere)
+    Draft::default().into_object(Class::Sphere)
 }
