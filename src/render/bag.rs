@@ -10,6 +10,7 @@ mod share;
 mod state;
 #[cfg(test)]
 mod tests;
+mod worker;
 
 use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -20,7 +21,7 @@ use crate::frame::{Emit, Halt};
 use crate::stopwatch::{Phase, Stopwatch};
 use state::State;
 
-pub(super) use state::{Activity, Finished, Kind, Role};
+pub(super) use worker::{Activity, Finished, Kind, Role};
 
 /// How often a worker that waits for a slower one looks whether it would be quicker itself.
 const LOOK: Duration = Duration::from_millis(5);
@@ -97,7 +98,7 @@ impl Bag {
     /// A band is finished.
     pub(super) fn deliver(&self, finished: Finished) {
         let compares = self.lock().compares(&finished.band.rows);
-        let hash = compares.then(|| state::hash(&finished.band));
+        let hash = compares.then(|| worker::hash(&finished.band));
         self.change(|state| state.deliver(finished, hash));
     }
 

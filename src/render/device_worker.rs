@@ -252,12 +252,16 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     }
                     let finished = {
                         let _refining = bag.refining();
-                        self.rendering
-                            .on_threads(|| finish.band(self.me, *rendered, &mut self.beside))
+                        let unwanted = || !bag.wants(&rows);
+                        self.rendering.on_threads(|| {
+                            finish.band(self.me, *rendered, &mut self.beside, &unwanted)
+                        })
                     };
                     match finished {
                         Ok(finished) => bag.deliver(finished),
-                        Err(Unfinished::Halt(Halt::Stopped)) => bag.fail(Error::Stopped),
+                        Err(Unfinished::Halt(Halt::Stopped)) if stop() => bag.fail(Error::Stopped),
+                        // Another worker brought the band meanwhile.
+                        Err(Unfinished::Halt(Halt::Stopped)) => {}
                         Err(Unfinished::Halt(halt)) => bag.halt(&rows, halt),
                         Err(Unfinished::Wrong(wrong)) => {
                             return Gone::Wrong(wrong.of(&here.gpu().name));

@@ -166,6 +166,8 @@ fn find(open: &Mutex<Vec<Arc<Device>>>, given: bool, wanted: &Wanted) -> Found {
             Err(error) => return Found::None(error),
         };
         watch.lap(Phase::Instance);
+        // What went wrong with a device does not pass.
+        open.retain(|device| device.gpu.check().is_ok());
         let opened = adapters.iter().map(|adapter| {
             let gpu = adapters::shared_on(adapter)?;
             let known = open.iter().find(|device| Arc::ptr_eq(&device.gpu, &gpu));

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use super::state::Role;
+use super::worker::Role;
 
 /// No band need have fewer pixels than this so that all end together: handing it out takes longer than making it.
 const LEAST: u64 = 4096;
@@ -62,6 +62,14 @@ impl Trial {
     /// Whether the one on trial has not brought its first band.
     pub(super) fn is_warming(&self) -> bool {
         matches!(self, Self::Warming)
+    }
+
+    /// The speed that the one on trial has to beat with the band that it has.
+    pub(super) fn reference(&self) -> Option<f64> {
+        match self {
+            Self::Tried(reference) => Some(*reference),
+            _ => None,
+        }
     }
 
     /// Whether a worker with this role may take a band now; `has_some` if it has one already.
