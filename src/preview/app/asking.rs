@@ -27,7 +27,7 @@ impl App {
                 objects,
             } => {
                 let buffer =
-                    self.gpu
+                    self.window
                         .device
                         .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                             label: Some("objects seen"),
@@ -97,7 +97,7 @@ impl App {
             }
         }
         let chosen = self
-            .gpu
+            .window
             .device
             .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("chosen objects"),

@@ -12,6 +12,7 @@ use crate::edit::{Target, Value, camera_block};
 use crate::preview::keys::Command;
 use crate::preview::overlay::SaveAs;
 use crate::preview::picture::{self, Mouse};
+use crate::preview::priority;
 use crate::preview::save;
 use crate::preview::session;
 use crate::preview::side::Wanted;
@@ -175,6 +176,7 @@ impl App {
         let teller = self.teller.clone();
         self.say(format!("saving {name} …"));
         self.on_thread("save picture", move || {
+            priority::lower();
             teller.tell(Event::Saved(task.run()));
         });
     }
