@@ -3,9 +3,9 @@
 //! Below `output`. The picture's hash is known only after its last row, so it stands in a text chunk behind the image
 //! data, which the format allows.
 //!
-//! The rows are compressed in strips, each for itself, on all cores: a strip ends with an empty block at a whole byte, so
-//! that what follows it can be put behind it, and all strips together are one stream as the format wants it. Where a
-//! strip ends follows from the picture's width alone, so neither the number of threads nor how rows come changes a byte.
+//! The rows are compressed in strips, each for itself, on all cores: a strip ends with an empty block at a whole byte,
+//! so that what follows it can be put behind it, and all strips together are one stream as the format wants it. Where a
+//! strip ends follows from the picture's width alone: neither the number of threads nor how rows come changes a byte.
 
 use std::io::{self, Write};
 use std::mem;
