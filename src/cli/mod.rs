@@ -96,6 +96,8 @@ EXIT CODES
   130 ended by Ctrl-C or SIGTERM; no unfinished file remains
 
 ENVIRONMENT
+  PLUMB_ADAPTER   part of the name of the GPU adapter to use, where --adapter
+                  gives none
   RUST_LOG        what the GPU's library may say on stderr: RUST_LOG=wgpu=warn
   NO_COLOR        no colours
   XDG_CACHE_HOME  where plumb/ remembers adapters that passed the self-test
@@ -208,7 +210,7 @@ fn interrupted() {
         // The shell's prompt gets a line of its own.
         say::talk("\n");
     }
-    end::process(INTERRUPTED)
+    end::now(INTERRUPTED)
 }
 
 /// What clap ends with: a help text or a version on stdout, or a usage error on stderr.

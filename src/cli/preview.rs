@@ -34,7 +34,8 @@ pub(crate) struct Args {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) picture: PictureOptions,
-    /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`)
+    /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`); without it
+    /// PLUMB_ADAPTER says it
     #[arg(long, value_name = "PART", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) adapter: Option<String>,
 }

@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Rect, Ui};
 
+use super::canvases::Canvases;
 use super::handles::Grabbed;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
@@ -29,14 +30,16 @@ use super::side::{self, Side};
 use super::status::{self, Line};
 use super::watch::Watcher;
 use super::worker::{self, PreviewPicture, Worker};
-use super::{Options, inspector};
-use crate::gpu::canvas::Scatter;
+use super::{Devices, Options, inspector};
 use crate::gpu::device::Gpu;
 use crate::scene::EntityId;
 use leaving::Leaving;
 
 /// What is said stays in the status line for so long.
 const SAID: Duration = Duration::from_secs(12);
+
+/// Figures that change are drawn anew so often.
+const FIGURES: Duration = Duration::from_millis(250);
 
 /// What other threads tell the window.
 enum Event {
@@ -65,7 +68,10 @@ impl Teller {
 
 /// The window.
 pub(super) struct App {
+    /// The device that renders.
     gpu: Arc<Gpu>,
+    /// The device that draws the window; perhaps the same.
+    window: Arc<Gpu>,
     options: Options,
     shared: SharedSession,
     events: Receiver<Event>,
@@ -115,22 +121,22 @@ impl App {
     /// Sets the window up on its device, and begins to watch, read and render.
     pub(super) fn new(
         creation: &eframe::CreationContext<'_>,
-        gpu: Arc<Gpu>,
+        Devices { gpu, window }: Devices,
         options: Options,
     ) -> anyhow::Result<Self> {
         let state = creation.wgpu_render_state.as_ref();
         screen::install(state.ok_or_else(|| anyhow::anyhow!("egui does not draw with wgpu"))?);
-        gpu.check()?;
+        window.check()?;
         let (sender, events) = mpsc::channel();
         let teller = Teller {
             events: sender,
             context: creation.egui_ctx.clone(),
         };
         let tell = teller.clone();
-        let scatter = Scatter::new(&gpu)?;
+        let canvases = Canvases::new(&gpu, &window)?;
         let worker = Worker::new(
             Arc::clone(&gpu),
-            scatter,
+            canvases,
             options.settings.clone(),
             move |news| tell.tell(Event::Rendered(news)),
         )?;
@@ -153,6 +159,7 @@ impl App {
         Ok(Self {
             shared,
             gpu,
+            window,
             options,
             events,
             teller,
@@ -267,9 +274,6 @@ impl App {
         let frames = self.frames();
         let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
         let picture = self.picture.as_ref();
-        let wished = self.shared.lock().wished;
-        let working =
-            picture.map_or(wished > 0, |picture| picture.number != wished) && self.failed.is_none();
         let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
         let scale = f64::from(ui.ctx().pixels_per_point());
         let placed = self.area.map(|rect| {
@@ -278,8 +282,7 @@ impl App {
                 .place(picture::area(rect, scale), size)
         });
         let line = Line {
-            working,
-            share: self.worker.progress.share(),
+            doing: self.doing(),
             zoom: placed.map_or(1.0, |placed| placed.zoom),
             frames,
             pixel: self.over.and_then(|pixel| {
@@ -288,13 +291,30 @@ impl App {
             }),
             said: said.map(|(text, _)| text.clone()),
         };
-        if line.share.is_some() || frames.is_some() || said.is_some() {
+        if line.doing.is_some() || frames.is_some() || said.is_some() {
             // The line is drawn again soon, so that its figures do not stand still.
-            ui.ctx().request_repaint_after(Duration::from_millis(100));
+            ui.ctx().request_repaint_after(FIGURES);
         }
         if status::show(ui, picture, &line) {
             self.help_open = true;
         }
+    }
+
+    /// What is being done, if anything.
+    fn doing(&self) -> Option<String> {
+        let state = self.shared.lock();
+        if state.wished == 0 {
+            // Nothing is wished for while there is no scene; what is wrong with the file is said elsewhere.
+            return state
+                .session
+                .trouble
+                .is_none()
+                .then(|| "reading the scene".into());
+        }
+        let shown = self.picture.as_ref().map(|picture| picture.number);
+        let behind = shown != Some(state.wished) && self.failed.is_none();
+        let words = self.worker.progress.doing().words();
+        words.or_else(|| behind.then(|| "rendering next".into()))
     }
 
     fn middle(&mut self, ui: &mut Ui) {
@@ -307,10 +327,11 @@ impl App {
                 self.area = Some(area);
                 self.take_mouse(ui, &mouse, &placed);
             }
-            None if trouble.is_none() && self.failed.is_none() => {
-                ui.centered_and_justified(|ui| ui.label("reading the scene …"));
+            None => {
+                if let (Some(doing), None, None) = (self.doing(), &trouble, &self.failed) {
+                    ui.centered_and_justified(|ui| ui.label(format!("{doing} …")));
+                }
             }
-            None => {}
         }
         if let Some(trouble) = &trouble {
             overlay::trouble(ui, rect, trouble, self.picture.is_some());

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use rayon::prelude::*;
 
 use super::latest::{LatestReceiver, LatestSender, latest};
+use super::priority;
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::gpu::device::Gpu;
@@ -78,6 +79,7 @@ impl Inspector {
         let thread = std::thread::Builder::new()
             .name("inspect".into())
             .spawn(move || {
+                priority::lower();
                 let mut next = receiver.take();
                 while let Some(question) = next {
                     next = about(&gpu, &settings, &receiver, question, &mut tell);

@@ -20,7 +20,8 @@ use super::{Backend, Emit, Error, Live, Precision, Settings};
 use crate::certify::lanes::Lanes;
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
-use crate::gpu::{GpuError, adapters};
+use crate::gpu::GpuError;
+use crate::gpu::candidates::{is_named, may_be_hardware};
 use crate::jitter::Jitter;
 use crate::render::install_hint;
 use crate::scene::Scene;
@@ -122,10 +123,10 @@ impl<'a> Rendering<'a> {
 
     /// The scene rounded to f32, for devices and lanes alike.
     pub(super) fn packed(&self) -> Arc<Packed> {
+        // On the thread that asks: one of those that were asked for may be waiting for this, and be the only one.
         let pack = || {
-            let exact_tracer = self.on_threads(|| self.decider.exact_tracer());
             Arc::new(Packed::prepared(
-                exact_tracer.bounded(),
+                self.decider.exact_tracer().bounded(),
                 self.scene,
                 self.settings,
             ))
@@ -180,11 +181,12 @@ impl<'a> Rendering<'a> {
         let wants_devices = self.wants_devices()?;
         let certified = self.settings.precision == Precision::Certified;
         // Where a device was named, where it alone may make the bytes, or where the CPU is not wanted, it is waited for.
-        let waits =
-            self.settings.backend == Backend::Gpu || self.settings.adapter.is_some() || !certified;
+        let waits = self.settings.backend == Backend::Gpu
+            || is_named(self.settings.adapter.as_deref())
+            || !certified;
         let mut asked = false;
         if let (true, Source::Devices(devices)) = (wants_devices, source)
-            && (waits || devices.are_given() || adapters::may_be_hardware())
+            && (waits || devices.are_given() || may_be_hardware())
         {
             devices.ask(Wanted::new(self.settings, waits), sender.clone());
             asked = true;
@@ -217,6 +219,8 @@ impl<'a> Rendering<'a> {
                 scope,
                 over: &over,
             };
+            // Whatever comes of it, all hear that it is over.
+            let _over = Over(&self.bag, &over);
             // First those that others stand by for.
             for here in found {
                 crew.device(here, Role::Works);
@@ -229,15 +233,14 @@ impl<'a> Rendering<'a> {
                 crew.spawn("devices", move || crew.late(devices, asked, &news, &sender));
             }
             watch.lap(Phase::Threads);
-            let ended = self.bag.emit(emit, watch);
-            for listener in listeners(&over).drain(..) {
-                // Who listens no more has ended.
-                let _ = listener.send(News::Over);
-            }
-            ended
+            self.bag.emit(emit, watch)
         });
         watch.lap(Phase::Drain);
         ended?;
+        // A device may be found to be wrong by a band that another one brought, when the last one has gone out.
+        if let Some(error) = self.bag.doubt() {
+            return Err(error);
+        }
         let mut told =
             std::mem::take(&mut *self.told.lock().unwrap_or_else(PoisonError::into_inner));
         // Only now is it known which bands went out.
@@ -257,13 +260,12 @@ impl<'a> Rendering<'a> {
     ) -> Result<Vec<Here<'s>>, Error> {
         let found = match news.recv() {
             Ok(News::Found(found)) => found,
-            // The thread that finds devices could not be started.
             _ => Found::None(GpuError::NoAdapter),
         };
         let any_tracer = self.settings.backend == Backend::Auto;
         match found {
             Found::Devices(found, phases) => {
-                let mut here = Vec::new();
+                let (mut here, mut not_here) = (Vec::new(), Vec::new());
                 for device in found {
                     match device {
                         Ok(device) => here.push(Here::Opened {
@@ -271,13 +273,21 @@ impl<'a> Rendering<'a> {
                             phases,
                             devices,
                         }),
-                        Err(error)
-                            if any_tracer && !matches!(error, GpuError::NoSuchAdapter { .. }) =>
-                        {
-                            self.tell(|told| told.left.push(format!("{error}; the CPU renders")));
-                        }
-                        Err(error) => return Err(error.into()),
+                        Err(error) => not_here.push(error),
                     }
+                }
+                // Who asks for the GPU, and has several, may do with one of them.
+                let others = !here.is_empty();
+                for error in not_here {
+                    if !any_tracer && !others {
+                        return Err(error.into());
+                    }
+                    let who = if others {
+                        "others render"
+                    } else {
+                        "the CPU renders"
+                    };
+                    self.tell(|told| told.left.push(format!("{error}; {who}")));
                 }
                 if self.settings.precision == Precision::Fast {
                     here.truncate(1);
@@ -306,6 +316,32 @@ fn listeners(over: &Listeners) -> MutexGuard<'_, Vec<Sender<News>>> {
     over.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Tells all that the rendering is over when it is dropped: also where what takes the bands panics.
+struct Over<'a>(&'a Bag, &'a Listeners);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        let Self(bag, over) = self;
+        bag.end();
+        for listener in listeners(over).drain(..) {
+            // Who listens no more has ended.
+            let _ = listener.send(News::Over);
+        }
+    }
+}
+
+/// Ends a rendering one of whose threads panics: what it had taken nobody would make. (The panic goes on where threads
+/// are joined.)
+struct EndsIfPanicking<'a>(&'a Bag);
+
+impl Drop for EndsIfPanicking<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.fail(Error::Threads("one of them panicked".into()));
+        }
+    }
+}
+
 /// The threads of a rendering.
 #[derive(Clone, Copy)]
 struct Crew<'scope, 'env, 'r> {
@@ -319,9 +355,14 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
     fn spawn(self, name: &str, work: impl FnOnce() + Send + 'scope) {
         #[cfg(test)]
         let work = super::tests::with_faults(work);
-        let started = thread::Builder::new()
-            .name(name.into())
-            .spawn_scoped(self.scope, work);
+        let bag = &self.rendering.bag;
+        let started =
+            thread::Builder::new()
+                .name(name.into())
+                .spawn_scoped(self.scope, move || {
+                    let _watched = EndsIfPanicking(bag);
+                    work();
+                });
         if let Err(error) = started {
             self.rendering.bag.fail(Error::Threads(error.to_string()));
         }

@@ -9,6 +9,7 @@
 
 mod attributes;
 mod build;
+mod bulk;
 mod bytes;
 mod check;
 mod common_mistakes;

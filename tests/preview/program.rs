@@ -101,6 +101,19 @@ impl<'d> Program<'d> {
         line.split_whitespace().nth(1)?.parse().ok()
     }
 
+    /// The seconds that its threads computed so far, all together.
+    pub(crate) fn cpu_seconds(&self) -> f64 {
+        let path = format!("/proc/{}/stat", self.process.child.id());
+        let stat = fs::read_to_string(path).unwrap();
+        // Behind the name in parentheses the fields are numbered from 3: 14 and 15 are ticks, of which 100 are a second.
+        let (_, fields) = stat.rsplit_once(") ").unwrap();
+        let ticks = fields.split(' ').skip(14 - 3).take(2);
+        ticks
+            .map(|ticks| ticks.parse::<f64>().unwrap())
+            .sum::<f64>()
+            / 100.0
+    }
+
     /// Closes the window as a user does, and waits for the end.
     pub(crate) fn close(self) -> Ended {
         self.window.ask_to_close();

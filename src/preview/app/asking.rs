@@ -34,7 +34,7 @@ impl App {
                 objects,
             } => {
                 let buffer =
-                    self.gpu
+                    self.window
                         .device
                         .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                             label: Some("objects seen"),
@@ -108,7 +108,7 @@ impl App {
             }
         }
         let chosen = self
-            .gpu
+            .window
             .device
             .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("chosen objects"),

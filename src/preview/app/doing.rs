@@ -13,6 +13,7 @@ use crate::edit::{Target, Value, camera_block};
 use crate::preview::keys::{self, Command};
 use crate::preview::overlay::SaveAs;
 use crate::preview::picture;
+use crate::preview::priority;
 use crate::preview::save;
 use crate::preview::selection::Selection;
 use crate::preview::session;
@@ -224,6 +225,7 @@ impl App {
         let teller = self.teller.clone();
         self.say(format!("saving {name} …"));
         self.on_thread("save picture", move || {
+            priority::lower();
             teller.tell(Event::Saved(task.run()));
         });
     }

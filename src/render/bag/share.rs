@@ -83,6 +83,15 @@ impl Trial {
         }
     }
 
+    /// Nobody makes these rows any more. If they were to be the other one's measure and told nothing, another band is.
+    pub(super) fn closed(&mut self, rows: &Range<u32>) {
+        if let Self::Reference(begun) = self
+            && begun.as_ref() == Some(rows)
+        {
+            *begun = None;
+        }
+    }
+
     /// A worker with this role brought these rows, at so many pixels a second; so many pixels are left. Returns which
     /// one is quicker, if that is decided.
     pub(super) fn learns(

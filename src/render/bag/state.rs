@@ -249,20 +249,32 @@ impl State {
         if self.is_over() || self.workers[me].left {
             return Taken::End;
         }
+        let is_cpu = self.workers[me].kind == Kind::Cpu;
+        if is_cpu && self.refining > 0 {
+            return Taken::Later;
+        }
+        // What went out and may be wrong is for the CPU alone, whatever else it does: another device may be of the
+        // same kind, and wrong alike.
+        if is_cpu && let Some(job) = self.next_check() {
+            return self.hand_out(me, job);
+        }
         let stands_by = self.workers[me].role == Role::StandsBy && self.at_work().next().is_some();
-        let is_busy = self.refining > 0 && self.workers[me].kind == Kind::Cpu;
         let has_some = self
             .out
             .iter()
             .any(|out| out.by.iter().any(|(worker, _)| *worker == me));
-        if stands_by || is_busy || !self.trial.admits(self.workers[me].role, has_some) {
+        if stands_by || !self.trial.admits(self.workers[me].role, has_some) {
             return Taken::Later;
         }
-        let Some(job) = self.next_job(me, wish, most) else {
+        let Some(job) = self.next_job(me, wish) else {
             return self.twice(me, most);
         };
+        self.trial.took(self.workers[me].role, &job.rows);
+        self.hand_out(me, job)
+    }
+
+    fn hand_out(&mut self, me: usize, job: Job) -> Taken {
         let rows = job.rows.clone();
-        self.trial.took(self.workers[me].role, &rows);
         self.out.push(Out {
             job,
             by: vec![(me, Instant::now())],
@@ -270,9 +282,17 @@ impl State {
         Taken::Rows(rows)
     }
 
+    /// Rows that went out and are to be compared: just as they went out.
+    fn next_check(&mut self) -> Option<Job> {
+        let mut jobs = self.jobs.iter();
+        let key = *jobs.find(|(_, job)| job.check.is_some())?.0;
+        self.jobs.remove(&key)
+    }
+
     /// The uppermost rows that nobody makes; not if they are too far ahead of what went out.
-    fn next_job(&mut self, me: usize, wish: u32, most: u32) -> Option<Job> {
-        let (key, job) = match self.jobs.first_key_value() {
+    fn next_job(&mut self, me: usize, wish: u32) -> Option<Job> {
+        let mut jobs = self.jobs.iter();
+        let (key, job) = match jobs.find(|(_, job)| job.check.is_none()) {
             Some((key, job)) => (Some(*key), job.clone()),
             None if self.next > self.rows.start => {
                 let rows = self.rows.start..self.next;
@@ -280,13 +300,6 @@ impl State {
             }
             None => return None,
         };
-        // What is compared is compared as it went out.
-        if job.check.is_some() {
-            if job.rows.len() > most as usize {
-                return None;
-            }
-            return key.and_then(|key| self.jobs.remove(&key));
-        }
         let wish = if self.band_rows.is_some() {
             wish
         } else {
@@ -334,18 +347,24 @@ impl State {
 
     /// A band that somebody else makes, if that is the quicker way to it.
     fn twice(&mut self, me: usize, most: u32) -> Taken {
-        let nothing_left = if self.rows_left() == 0 && self.out.is_empty() {
-            Taken::End
-        } else {
-            Taken::Later
-        };
+        // The CPU stays until all is over: a device that is still busy with a band that another one brought may be found
+        // to be wrong, and all that it brought is to be made again then. Nobody stands by for a device that is done.
+        let is_device = self.workers[me].kind == Kind::Device;
+        if is_device && self.rows_left() == 0 && self.out.is_empty() {
+            self.leave(me);
+            return Taken::End;
+        }
         let (Some(mine), now) = (self.workers[me].activity.speed, Instant::now()) else {
-            return nothing_left;
+            return Taken::Later;
         };
         let width = self.width;
         let workers = &self.workers;
         let slow = |out: &&mut Out| match out.by[..] {
-            [(other, since)] if other != me && out.job.rows.len() <= most as usize => {
+            [(other, since)]
+                if other != me
+                    && out.job.check.is_none()
+                    && out.job.rows.len() <= most as usize =>
+            {
                 let pixels = out.job.rows.len() as f64 * width as f64;
                 pays_twice(pixels, mine, workers[other].activity.speed, now - since)
             }
@@ -356,8 +375,14 @@ impl State {
                 out.by.push((me, now));
                 Taken::Rows(out.job.rows.clone())
             }
-            None => nothing_left,
+            None => Taken::Later,
         }
+    }
+
+    /// Why rows that went out may be wrong, if nobody has compared them.
+    pub(super) fn doubt(&self) -> Option<Arc<str>> {
+        let mut checks = self.jobs.values().filter_map(|job| job.check.as_ref());
+        checks.next().map(|(_, why)| Arc::clone(why))
     }
 
     fn give_back(&mut self, job: Job) {
@@ -390,12 +415,17 @@ impl State {
             return;
         };
         self.learn(me, &out);
-        match out.job.check {
-            None => {
-                self.finished.insert(finished.band.rows.end, Ok(finished));
-            }
-            Some((expected, _)) if hash == Some(expected) => self.count(&finished),
-            Some((_, why)) => self.fail(Error::Revoked(why.to_string())),
+        self.trial.closed(&out.job.rows);
+        let Some((expected, why)) = out.job.check else {
+            self.finished.insert(finished.band.rows.end, Ok(finished));
+            return;
+        };
+        // That it is to be compared may be news since the caller asked.
+        let found = hash.or(finished.hash);
+        if found.unwrap_or_else(|| self::hash(&finished.band)) == expected {
+            self.count(&finished);
+        } else {
+            self.fail(Error::Revoked(why.to_string()));
         }
     }
 
@@ -440,6 +470,7 @@ impl State {
 
     pub(super) fn halt(&mut self, rows: &Range<u32>, halt: Halt) {
         if let Some(out) = self.close(rows) {
+            self.trial.closed(rows);
             match out.job.check {
                 None => {
                     self.finished.insert(rows.end, Err(halt));
@@ -465,6 +496,7 @@ impl State {
         for mut out in std::mem::take(&mut self.out) {
             out.by.retain(|(worker, _)| *worker != me);
             if out.by.is_empty() {
+                self.trial.closed(&out.job.rows);
                 self.give_back(out.job);
             } else {
                 kept.push(out);
