@@ -198,6 +198,7 @@ impl Session {
             // This is what was saved here, on top of the same origin.
             let is_new = origin.set_textures(&parsed.scene);
             self.saved = saved;
+            self.history.end_step();
             self.good = Some((parsed, Arc::new(text)));
             self.report_file("saved");
             return is_new;

@@ -91,6 +91,11 @@ impl History {
         continues
     }
 
+    /// What comes next is another step: what was saved can be gone back to.
+    pub(super) fn end_step(&mut self) {
+        self.last = None;
+    }
+
     /// The changes a step before or after these; nothing where there is none. What is the same as now is no step.
     pub(super) fn go(&mut self, direction: Direction, now: &Changes) -> Option<Changes> {
         self.last = None;

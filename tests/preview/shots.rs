@@ -100,7 +100,7 @@ fn shots_of_what_is_changed() {
     // A chessman, by a click on it.
     shot(
         "gallery/quadric_chess.txt",
-        (300, 260),
+        (265, 290),
         (5, 5),
         "quadric.png",
     );

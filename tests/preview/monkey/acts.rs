@@ -90,9 +90,10 @@ impl Monkey<'_> {
             94..=97 => self.write(),
             98 if self.random.below(4) == 0 => window.ask_to_close(),
             _ => {
-                // A mistake for a while.
+                // A mistake for a while, wherever the text is cut off.
                 let end = self.good.len() * self.random.below(100) as usize / 100;
-                self.file.write(self.good.get(..end).unwrap_or("camera {"));
+                let start = self.good.get(..end).unwrap_or_default();
+                self.file.write(&format!("{start}\ncamera {{"));
             }
         }
     }

@@ -131,6 +131,17 @@ fn a_drag_is_one_step_and_so_is_a_run_of_the_wheel() {
 }
 
 #[test]
+fn what_was_saved_in_the_middle_of_a_drag_can_be_gone_back_to() {
+    let (_folder, mut session) = session(SCENE);
+    session.set(RADIUS, 3.0.into(), Step::Held(RADIUS, 1));
+    save(&mut session).unwrap();
+    session.set(RADIUS, 4.0.into(), Step::Held(RADIUS, 1));
+    assert!(session.step_back(Direction::Undo));
+    assert_eq!(session.value(RADIUS), Some(3.0.into()));
+    assert!(session.unsaved().is_empty());
+}
+
+#[test]
 fn what_others_write_is_not_undone() {
     let (_folder, mut session) = session(SCENE);
     session.set(RADIUS, 3.0.into(), Step::Alone);
