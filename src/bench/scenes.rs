@@ -55,8 +55,8 @@ pub struct BenchError {
 /// # Errors
 /// If a scene cannot be rendered on the CPU. What the GPU cannot do is in the report.
 pub fn bench(asked: &Asked, step: &mut dyn FnMut()) -> Result<Report, BenchError> {
-    let opened = gpu::adapters::open(None);
-    let gpu = opened.as_ref().map_err(ToString::to_string);
+    let opened = gpu::adapters::shared(None);
+    let gpu = opened.as_deref().map_err(ToString::to_string);
     let mut scenes = Vec::new();
     let devices = Devices::new();
     for (name, file, scene) in &asked.scenes {

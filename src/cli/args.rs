@@ -162,7 +162,8 @@ on where they fail.
 cpu: the CPU alone; no driver is loaded."
     )]
     pub(crate) backend: BackendName,
-    /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`)
+    /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`); without it
+    /// PLUMB_ADAPTER says it
     #[arg(long, value_name = "PART", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) adapter: Option<String>,
     /// Every byte right, or the GPU's f32 as it comes

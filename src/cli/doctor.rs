@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use plumb::gpu::adapters::{self, AdapterSummary};
+use plumb::gpu::adapters::{self, AdapterSummary, VARIABLE};
 use plumb::probe::digits::count;
 use plumb::render::install_hint;
 use serde_json::json;
@@ -16,7 +16,8 @@ use super::{Answer, SOFTWARE, args, say};
 Adapters come in plumb's order of preference: discrete, integrated, virtual, software. Each is put through the \
 self-test: hard operands for + - * / sqrt, rounding, conversions, comparisons, exact sums and products behind a \
 barrier. Exit 1: \
-there is none that can be used or trusted, and the CPU renders.")]
+there is none that can be used or trusted, and the CPU renders. PLUMB_ADAPTER in the environment names one as \
+--adapter does.")]
 pub(crate) struct Args {
     /// Print the same as JSON
     #[arg(long)]
@@ -26,20 +27,23 @@ pub(crate) struct Args {
 /// Lists the adapters.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
     let adapters = adapters::list();
-    let chosen = adapters
-        .iter()
-        .position(|adapter| adapter.problem.is_none());
+    let wanted = adapters::wanted_by_variable();
+    let wanted = wanted.as_deref();
+    let chosen = adapters.iter().position(|adapter| match wanted {
+        Some(part) => adapter.is_named(part),
+        None => adapter.problem.is_none(),
+    });
     let text = if args.json {
-        to_json(&adapters, chosen)
+        to_json(&adapters, chosen, wanted)
     } else {
-        to_text(&adapters, chosen)
+        to_text(&adapters, chosen, wanted)
     };
     say::data(&text)?;
     let trusted = chosen.and_then(|i| adapters.get(i)).is_some_and(is_trusted);
     Ok(if trusted { Answer::Yes } else { Answer::No })
 }
 
-fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
+fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>, wanted: Option<&str>) -> String {
     let mut text = String::new();
     for (i, adapter) in adapters.iter().enumerate() {
         let mark = if chosen == Some(i) { "*" } else { " " };
@@ -81,7 +85,7 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
         }
     }
     let _ = writeln!(text, "  CPU, {}", count(args::cores(), "thread"));
-    let _ = writeln!(text, "\n{}", verdict(adapters, chosen));
+    let _ = writeln!(text, "\n{}", verdict(adapters, chosen, wanted));
     text
 }
 
@@ -101,8 +105,14 @@ fn is_trusted(adapter: &AdapterSummary) -> bool {
         .is_some_and(|outcomes| outcomes.iter().all(|outcome| outcome.failure.is_none()))
 }
 
-/// Which one, and why.
-fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
+/// Which one, and why; `wanted` is what the environment asks for.
+fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>, wanted: Option<&str>) -> String {
+    let named = wanted.map(|part| format!("{VARIABLE}={part}"));
+    if let (Some(named), None, false) = (&named, chosen, adapters.is_empty()) {
+        return format!(
+            "{named} names none of the adapters, so plumb renders with --backend cpu alone."
+        );
+    }
     let Some(adapter) = chosen.and_then(|i| adapters.get(i)) else {
         let on_cpu = "plumb renders on the CPU";
         // What is there has its driver, and its problem stands above.
@@ -112,6 +122,9 @@ fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
         let hint = install_hint();
         return format!("{on_cpu}: there is no GPU adapter.\nFor a GPU: {hint}.");
     };
+    if let Some(problem) = &adapter.problem {
+        return format!("plumb cannot render on {}: {problem}.", adapter.name);
+    }
     if !is_trusted(adapter) {
         return format!(
             "plumb renders on the CPU: {} does not compute as WGSL asks, so nothing it says can be certified.\n\
@@ -124,6 +137,7 @@ fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
         .filter(|adapter| adapter.problem.is_none())
         .count();
     let why = match (adapters.len(), usable) {
+        _ if named.is_some() => format!("{} names it", named.unwrap_or_default()),
         (1, _) => "it is the only adapter".to_owned(),
         (_, 1) => "it is the only adapter that can be used".to_owned(),
         _ => format!(
@@ -136,12 +150,12 @@ fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
     )
 }
 
-fn to_json(adapters: &[AdapterSummary], chosen: Option<usize>) -> String {
+fn to_json(adapters: &[AdapterSummary], chosen: Option<usize>, wanted: Option<&str>) -> String {
     let value = json!({
         "software": SOFTWARE,
         "adapters": adapters,
         "chosen": chosen,
-        "verdict": verdict(adapters, chosen),
+        "verdict": verdict(adapters, chosen, wanted),
         "install": adapters.is_empty().then(install_hint),
         "cpu": { "threads": args::cores() },
     });
@@ -196,12 +210,12 @@ mod tests {
 
     #[test]
     fn without_an_adapter_the_verdict_says_what_to_install() {
-        assert!(verdict(&[], None).contains(install_hint()));
+        assert!(verdict(&[], None, None).contains(install_hint()));
         let broken = [adapter("a", Some("it is too old"))];
-        assert!(verdict(&broken, None).contains("none of the adapters can be used"));
+        assert!(verdict(&broken, None, None).contains("none of the adapters can be used"));
         // Its driver is there: another one would not help.
-        assert!(!verdict(&broken, None).contains("install"));
-        assert!(to_text(&broken, None).contains("it is too old"));
+        assert!(!verdict(&broken, None, None).contains("install"));
+        assert!(to_text(&broken, None, None).contains("it is too old"));
     }
 
     #[test]
@@ -213,7 +227,7 @@ mod tests {
             cases: 7,
             failure: Some("x = 1 gave 3".to_owned()),
         }]);
-        let text = to_text(&[wrong], Some(0));
+        let text = to_text(&[wrong], Some(0), None);
         assert!(
             text.contains("self-test       1 of 1 check failed"),
             "{text}"
@@ -231,11 +245,30 @@ mod tests {
     #[test]
     fn the_adapter_that_is_used_is_marked_and_explained() {
         let two = [adapter("a", Some("it is too old")), adapter("b", None)];
-        let text = to_text(&two, Some(1));
+        let text = to_text(&two, Some(1), None);
         assert!(text.contains("\n* b (software)"), "{text}");
         assert!(
             text.contains("plumb renders on b: it is the only adapter that can be used"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn the_environments_choice_is_told() {
+        let mut two = [adapter("a", None), adapter("b", Some("it is too old"))];
+        let names = verdict(&two, Some(0), Some("A"));
+        assert!(
+            names.contains("plumb renders on a: PLUMB_ADAPTER=A names it"),
+            "{names}"
+        );
+        let broken = verdict(&two, Some(1), Some("b"));
+        assert!(
+            broken.contains("plumb cannot render on b: it is too old"),
+            "{broken}"
+        );
+        let none = verdict(&two, None, Some("c"));
+        assert!(none.contains("PLUMB_ADAPTER=c names none"), "{none}");
+        two[1].problem = None;
+        assert!(two[0].is_named("A [DRIVER") && !two[1].is_named("a ["));
     }
 }

@@ -96,6 +96,8 @@ EXIT CODES
   130 ended by Ctrl-C or SIGTERM; no unfinished file remains
 
 ENVIRONMENT
+  PLUMB_ADAPTER   part of the name of the GPU adapter to use, where --adapter
+                  gives none
   RUST_LOG        what the GPU's library may say on stderr: RUST_LOG=wgpu=warn
   NO_COLOR        no colours
   XDG_CACHE_HOME  where plumb/ remembers adapters that passed the self-test

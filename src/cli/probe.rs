@@ -132,8 +132,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         cache: cache::folder(),
         ..args.picture.settings()
     };
-    let gpu = adapters::open(settings.adapter.as_deref());
-    let probe = Probe::new(&scene, &settings, gpu.as_ref());
+    let gpu = adapters::shared(settings.adapter.as_deref());
+    let probe = Probe::new(&scene, &settings, gpu.as_deref());
     let name = source::name(&args.scene);
     if args.json {
         let facts = probe.facts([x, y], AskGpu::ValueAndVerdict)?;

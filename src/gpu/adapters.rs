@@ -1,13 +1,15 @@
-//! Adapters: which there are, and which one is used. `plumb doctor` lists them; `render` and others open the first.
+//! Adapters: which there are, and which one is used. `plumb doctor` lists them; `render` and others open the first, or
+//! the one that [`VARIABLE`] names.
 //!
-//! Stands above [`device`](super::device), which opens one, and [`selftest`], which tries out what was opened.
+//! Stands above [`device`](super::device), which opens one, and [`selftest`], which tries out what was opened. Driver
+//! and devices are the process's: whoever asks first, on any thread, waits for them, and nobody gives them back.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use serde::Serialize;
 
 use super::GpuError;
-use super::device::{Gpu, describe, driver};
+use super::device::{Gpu, describe, driver, full_name};
 use super::selftest::{self, Outcome};
 use crate::shader::constants::WORKGROUP;
 
@@ -38,6 +40,16 @@ pub struct AdapterSummary {
     pub selftest: Option<Vec<Outcome>>,
 }
 
+impl AdapterSummary {
+    /// Whether this part of a name means the adapter.
+    pub fn is_named(&self, part: &str) -> bool {
+        is_part_of(part, &full_name(&self.name, &self.driver))
+    }
+}
+
+/// The environment's variable that names an adapter where nothing else does.
+pub const VARIABLE: &str = "PLUMB_ADAPTER";
+
 /// All adapters, in the order in which plumb prefers them: discrete, integrated, virtual, software; each of them
 /// tested.
 pub fn list() -> Vec<AdapterSummary> {
@@ -54,7 +66,13 @@ pub fn list() -> Vec<AdapterSummary> {
     enumerate(instance()).iter().map(tested).collect()
 }
 
-/// The first adapter that can be used, or the first whose name contains `wanted` in any case of letters.
+/// What [`VARIABLE`] says, if it says anything.
+pub fn wanted_by_variable() -> Option<String> {
+    std::env::var(VARIABLE).ok().filter(|part| !part.is_empty())
+}
+
+/// The first adapter that can be used, or the first whose name contains `wanted`, or else what [`VARIABLE`] says, in
+/// any case of letters.
 ///
 /// # Errors
 /// If there is none.
@@ -62,66 +80,73 @@ pub fn find(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
     choose(&enumerate(instance()), wanted).cloned()
 }
 
-/// Adapters that a picture may be made on together.
-#[derive(Debug)]
-pub enum Candidates {
-    /// These: the one that was named, else all that are hardware, else the first that is software.
-    Adapters(Vec<wgpu::Adapter>),
-    /// There is software only, which was not asked for; it is called this.
-    Software(String),
-}
-
-/// The adapters for a picture: the one that was named, or all that are hardware and can be used; where there are none,
-/// the first that is software, if that will do.
-///
-/// # Errors
-/// If there is none.
-pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, GpuError> {
-    let all = enumerate(instance());
-    if wanted.is_none() {
-        let is_hardware = |adapter: &&wgpu::Adapter| {
-            !is_software(&adapter.get_info()) && problem(adapter).is_none()
-        };
-        let hardware: Vec<_> = all.iter().filter(is_hardware).cloned().collect();
-        if !hardware.is_empty() {
-            return Ok(Candidates::Adapters(hardware));
-        }
+pub(super) fn choose<'a>(
+    adapters: &'a [wgpu::Adapter],
+    wanted: Option<&str>,
+) -> Result<&'a wgpu::Adapter, GpuError> {
+    match (wanted, wanted_by_variable()) {
+        (Some(part), _) => named(adapters, part, "--adapter"),
+        (None, Some(part)) => named(adapters, &part, VARIABLE),
+        (None, None) => first_usable(adapters),
     }
-    let first = choose(&all, wanted)?;
-    if wanted.is_none() && !software && is_software(&first.get_info()) {
-        return Ok(Candidates::Software(first.get_info().name));
-    }
-    Ok(Candidates::Adapters(vec![first.clone()]))
 }
 
-pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
-    info.device_type == wgpu::DeviceType::Cpu
-}
-
-/// Whether there may be an adapter that is no software, as far as can be told without loading a driver: on Linux GPUs
-/// are files in /dev.
-pub fn may_be_hardware() -> bool {
-    if !cfg!(target_os = "linux") {
-        return true;
-    }
-    let is_gpu = |name: &str| {
-        ["nvidia", "dxg", "kfd", "mali", "kgsl"]
-            .iter()
-            .any(|start| name.starts_with(start))
-    };
-    let holds = |folder: &str, is_gpu: &dyn Fn(&str) -> bool| {
-        let mut entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.any(|entry| is_gpu(&entry.file_name().to_string_lossy()))
-    };
-    holds("/dev/dri", &|name| name.starts_with("renderD")) || holds("/dev", &is_gpu)
-}
-
-/// Opens the adapter that [`find`] finds.
+/// Opens the adapter that [`find`] finds, for the caller alone.
 ///
 /// # Errors
 /// As [`find`], and as [`Gpu::open`].
 pub fn open(wanted: Option<&str>) -> Result<Gpu, GpuError> {
     Gpu::open(&find(wanted)?)
+}
+
+/// [`shared_on`] the adapter that [`find`] finds.
+///
+/// # Errors
+/// As [`find`], and as [`Gpu::open`].
+pub fn shared(wanted: Option<&str>) -> Result<Arc<Gpu>, GpuError> {
+    shared_on(&find(wanted)?)
+}
+
+/// The process's own device on this adapter: opened when it is first asked for, and anew when something went wrong with
+/// the one before. It stays open, for the next picture, and is not closed at the end of the process either, since the
+/// system does that.
+///
+/// # Errors
+/// As [`Gpu::open`].
+pub fn shared_on(adapter: &wgpu::Adapter) -> Result<Arc<Gpu>, GpuError> {
+    static SHARED: Shared = Shared(Mutex::new(Vec::new()));
+    SHARED.get(adapter)
+}
+
+/// Devices that stay open, at most one an adapter.
+struct Shared(Mutex<Vec<(wgpu::AdapterInfo, Arc<Gpu>)>>);
+
+impl Shared {
+    fn get(&self, adapter: &wgpu::Adapter) -> Result<Arc<Gpu>, GpuError> {
+        let info = adapter.get_info();
+        if let Some(gpu) = self.sound(&info) {
+            return Ok(gpu);
+        }
+        // No lock is held meanwhile, so that two adapters open at the same time; of one adapter the first one counts.
+        let opened = Arc::new(Gpu::open(adapter)?);
+        if let Some(gpu) = self.sound(&info) {
+            return Ok(gpu);
+        }
+        self.lock().push((info, Arc::clone(&opened)));
+        Ok(opened)
+    }
+
+    /// The adapter's device, if nothing went wrong with it.
+    fn sound(&self, info: &wgpu::AdapterInfo) -> Option<Arc<Gpu>> {
+        let mut shared = self.lock();
+        shared.retain(|(_, gpu)| gpu.check().is_ok());
+        let (_, gpu) = shared.iter().find(|(of, _)| of == info)?;
+        Some(Arc::clone(gpu))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(wgpu::AdapterInfo, Arc<Gpu>)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// A device for a window, with what else a window is made from.
@@ -176,7 +201,7 @@ pub fn open_beside(renderer: &Opened, wanted: Option<&str>) -> Result<Opened, Gp
 /// The instance that all rendering is done on. It is never dropped, since that unloads the driver, and NVIDIA's can be
 /// loaded about thirty times in a process only: the next instance finds no adapter, or the process dies. So a process
 /// may open as many devices, one after the other, as it likes; and only the first of them waits for the driver.
-fn instance() -> &'static wgpu::Instance {
+pub(super) fn instance() -> &'static wgpu::Instance {
     static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
     INSTANCE.get_or_init(new_instance)
 }
@@ -190,7 +215,7 @@ fn new_instance() -> wgpu::Instance {
 }
 
 /// All adapters, those that plumb prefers first.
-fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+pub(super) fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     // The sort is stable, so that adapters of equal rank stay in the system's order.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
@@ -207,40 +232,42 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
-fn choose<'a>(
+/// The first whose name contains this part of it, as `asker` wants it.
+fn named<'a>(
     adapters: &'a [wgpu::Adapter],
-    wanted: Option<&str>,
+    part: &str,
+    asker: &'static str,
 ) -> Result<&'a wgpu::Adapter, GpuError> {
-    if adapters.is_empty() {
-        return Err(GpuError::NoAdapter);
-    }
-    if let Some(wanted) = wanted {
-        let part = wanted.to_lowercase();
-        let named =
-            |adapter: &&wgpu::Adapter| describe(&adapter.get_info()).to_lowercase().contains(&part);
-        return adapters
-            .iter()
-            .find(named)
-            .ok_or_else(|| GpuError::NoSuchAdapter {
-                wanted: wanted.to_owned(),
-                found: adapters
-                    .iter()
-                    .map(|adapter| describe(&adapter.get_info()))
-                    .collect(),
-            });
-    }
+    let name = |adapter: &wgpu::Adapter| describe(&adapter.get_info());
+    let found = adapters
+        .iter()
+        .find(|adapter| is_part_of(part, &name(adapter)));
+    found.ok_or_else(|| match adapters {
+        [] => GpuError::NoAdapter,
+        _ => GpuError::NoSuchAdapter {
+            wanted: part.to_owned(),
+            asker,
+            found: adapters.iter().map(name).collect(),
+        },
+    })
+}
+
+/// Whether an adapter of this name is meant.
+fn is_part_of(part: &str, name: &str) -> bool {
+    name.to_lowercase().contains(&part.to_lowercase())
+}
+
+fn first_usable(adapters: &[wgpu::Adapter]) -> Result<&wgpu::Adapter, GpuError> {
+    let first = adapters.first().ok_or(GpuError::NoAdapter)?;
     let usable = adapters.iter().find(|adapter| problem(adapter).is_none());
-    match usable {
-        Some(adapter) => Ok(adapter),
-        None => Err(GpuError::Device {
-            adapter: describe(&adapters[0].get_info()),
-            reason: problem(&adapters[0]).unwrap_or_default(),
-        }),
-    }
+    usable.ok_or_else(|| GpuError::Device {
+        adapter: describe(&first.get_info()),
+        reason: problem(first).unwrap_or_default(),
+    })
 }
 
 /// Why plumb cannot use the adapter, if so.
-fn problem(adapter: &wgpu::Adapter) -> Option<String> {
+pub(super) fn problem(adapter: &wgpu::Adapter) -> Option<String> {
     let limits = adapter.limits();
     let flags = adapter.get_downlevel_capabilities().flags;
     if !flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
@@ -287,6 +314,38 @@ mod tests {
     use std::fs;
 
     use super::*;
+
+    /// As many devices as the whole test-suite opens, one after the other and some at a time. Needs an adapter, and
+    /// fails without one.
+    #[test]
+    fn a_process_opens_as_many_devices_as_it_likes() {
+        for _ in 0..30 {
+            let opened: Vec<Gpu> = (0..4).map(|_| open(None).unwrap()).collect();
+            assert!(opened.iter().all(|gpu| gpu.check().is_ok()));
+        }
+    }
+
+    /// Whoever asks, on whichever thread, gets the same device, until something goes wrong with it. Needs an adapter,
+    /// and fails without one.
+    #[test]
+    fn a_device_is_shared_until_it_fails() {
+        let devices = Shared(Mutex::new(Vec::new()));
+        let get = || devices.get(&find(None).unwrap()).unwrap();
+        let first = get();
+        let on_thread = std::thread::scope(|scope| scope.spawn(get).join().unwrap());
+        assert!(Arc::ptr_eq(&first, &on_thread));
+        // This one is refused: a buffer to be mapped for reading must not be one of a scene.
+        let _refused = first.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        assert!(first.check().is_err());
+        let next = get();
+        assert!(!Arc::ptr_eq(&first, &next));
+        assert!(next.check().is_ok());
+    }
 
     /// The libraries that the process has loaded.
     fn loaded() -> BTreeSet<String> {

@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
-use super::adapters::is_software;
+use super::candidates::is_software;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
@@ -238,11 +238,14 @@ impl Gpu {
 
 /// Name and driver, for people.
 pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
-    let driver = driver(info);
+    full_name(&info.name, &driver(info))
+}
+
+pub(super) fn full_name(adapter: &str, driver: &str) -> String {
     if driver.is_empty() {
-        info.name.clone()
+        adapter.to_owned()
     } else {
-        format!("{} [{driver}]", info.name)
+        format!("{adapter} [{driver}]")
     }
 }
 
@@ -253,7 +256,7 @@ pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
 }
 
 /// All that tells an adapter from others, in a line.
-pub fn identity(info: &wgpu::AdapterInfo) -> String {
+fn identity(info: &wgpu::AdapterInfo) -> String {
     let wgpu::AdapterInfo {
         name,
         vendor,

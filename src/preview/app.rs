@@ -1,10 +1,12 @@
 //! The window: brings together the file, the pictures, the panels, and what the user does.
 //!
-//! Here are its parts, and a frame; `doing` has what keys, mouse and panels ask for, `asking` what is wanted to be
-//! known of the picture.
+//! Here are its parts, and a frame; `doing` has what keys and panels ask for, `hands` what the mouse does on the
+//! picture, `asking` what is wanted to be known of it, `leaving` what is asked before the window closes.
 
 mod asking;
 mod doing;
+mod hands;
+mod leaving;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,10 +17,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Rect, Ui};
 
 use super::canvases::Canvases;
+use super::handles::Grabbed;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
-use super::keys;
-use super::overlay::{self, Chosen, Leaving, SaveAs};
+use super::keys::Command;
+use super::overlay::{self, Chosen, SaveAs};
 use super::picture::{self, Showing};
 use super::screen::{self, ObjectMap};
 use super::session::{self, Session};
@@ -30,6 +33,7 @@ use super::worker::{self, PreviewPicture, Worker};
 use super::{Devices, Options, inspector};
 use crate::gpu::device::Gpu;
 use crate::scene::EntityId;
+use leaving::Leaving;
 
 /// What is said stays in the status line for so long.
 const SAID: Duration = Duration::from_secs(12);
@@ -86,16 +90,23 @@ pub(super) struct App {
     panel: Panel,
     panel_open: bool,
     /// What was asked last: of which wish, which pixel; whether the picture stays, whether which objects are seen.
-    asked: Option<(u64, Option<[u32; 2]>, [bool; 2])>,
+    asked: Option<(u64, Option<[u32; 2]>, [bool; 3])>,
     seen: Option<(u64, Arc<ObjectMap>)>,
     outlined: Option<(u64, EntityId)>,
     over: Option<[u32; 2]>,
+    /// The pixel that was clicked, as long as it is not known what it shows.
+    clicked: Option<[u32; 2]>,
+    /// The handle that is dragged.
+    grabbed: Option<Grabbed>,
+    /// How often a button of the mouse was pressed.
+    presses: u64,
     area: Option<Rect>,
     help_open: bool,
     save_as: Option<SaveAs>,
-    /// Whether the window is to be closed, and asks what becomes of changes; once they are saved, in which case it does
-    /// not ask.
-    leaving: Option<bool>,
+    /// Whether the window is to be closed.
+    leaving: Leaving,
+    /// What is to be done once a field of text was left.
+    deferred: Vec<Command>,
     /// What is being saved or read beside the window.
     threads: Vec<JoinHandle<()>>,
     /// Set when the window closes: pictures that are being saved are given up.
@@ -166,10 +177,14 @@ impl App {
             seen: None,
             outlined: None,
             over: None,
+            clicked: None,
+            grabbed: None,
+            presses: 0,
             area: None,
             help_open: false,
             save_as: None,
-            leaving: None,
+            leaving: Leaving::default(),
+            deferred: Vec::new(),
             threads: Vec::new(),
             closing: Arc::new(AtomicBool::new(false)),
             said: None,
@@ -205,9 +220,9 @@ impl App {
                 }
                 Event::Inspected(answer) => self.answered(answer),
                 Event::Saved(saved) => {
-                    if let (Err(_), Some(true)) = (&saved, self.leaving) {
+                    if saved.is_err() {
                         // There is something to be read first.
-                        self.leaving = None;
+                        self.leaving.stop_saving();
                     }
                     let (Ok(text) | Err(text)) = saved;
                     self.say(text);
@@ -233,7 +248,7 @@ impl App {
         let kind = self.picture.as_ref().map(status::kind).unwrap_or_default();
         let state = self.shared.lock();
         let session = &state.session;
-        let star = if session.changes().is_empty() {
+        let star = if session.unsaved().is_empty() {
             ""
         } else {
             "*"
@@ -308,9 +323,9 @@ impl App {
         match &self.picture {
             Some(picture) => {
                 let held = self.panel.held;
-                let (mouse, _, area) = picture::show(ui, picture, &mut self.showing, held);
+                let (mouse, placed, area) = picture::show(ui, picture, &mut self.showing, held);
                 self.area = Some(area);
-                self.take_mouse(&mouse);
+                self.take_mouse(ui, &mouse, &placed);
             }
             None => {
                 if let (Some(doing), None, None) = (self.doing(), &trouble, &self.failed) {
@@ -340,37 +355,6 @@ impl App {
     }
 }
 
-impl App {
-    /// Asks before changes are lost.
-    fn leave(&mut self, context: &Context) {
-        let lost = self.shared.lock().session.to_be_lost();
-        let name = self.shared.lock().session.name();
-        let asked_to = context.input(|input| input.viewport().close_requested());
-        if asked_to && lost > 0 && self.leaving.is_none() {
-            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.leaving = Some(false);
-        }
-        let close = egui::ViewportCommand::Close;
-        match self.leaving {
-            Some(true) if lost == 0 => context.send_viewport_cmd(close),
-            Some(false) => match overlay::leaving(context, lost, &name) {
-                Some(Leaving::Save) => {
-                    self.leaving = Some(true);
-                    self.save_changes();
-                }
-                Some(Leaving::Lose) => {
-                    self.shared.lock().change(|session| session.discard(None));
-                    self.leaving = None;
-                    context.send_viewport_cmd(close);
-                }
-                Some(Leaving::Stay) => self.leaving = None,
-                None => {}
-            },
-            Some(true) | None => {}
-        }
-    }
-}
-
 impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         self.listen();
@@ -379,11 +363,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        if self.save_as.is_none() && self.leaving.is_none() {
-            for command in keys::pressed(&context) {
-                self.obey(&context, command);
-            }
-        }
+        self.take_keys(&context);
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         if self.side_open {
             let wanted = egui::Panel::right("side")

@@ -28,7 +28,7 @@ fn near(found: [f64; 3], expected: [f64; 3], tolerance: f64) {
 #[test]
 fn facts_are_those_found_by_hand() {
     let scene = load("notes/walls.txt");
-    let gpu = adapters::open(None).unwrap();
+    let gpu = adapters::shared(None).unwrap();
     let probe = Probe::new(&scene, &Settings::default(), Ok(&gpu));
     let root = 61.0_f64.sqrt();
     let off: f64 = 4.0 / 639.0;
@@ -187,7 +187,7 @@ fn hits_are_exact() {
 /// What is kept from one pixel to the next changes nothing.
 #[test]
 fn a_probe_says_the_same_whatever_it_was_asked_before() {
-    let gpu = adapters::open(None).unwrap();
+    let gpu = adapters::shared(None).unwrap();
     let pixels = [[3, 5], [60, 40], [0, 0], [3, 6], [79, 59], [40, 30], [3, 5]];
     for (name, samples, jitter) in [
         ("notes/walls.txt", 1, SamplePattern::Hash),

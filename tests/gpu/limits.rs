@@ -97,7 +97,7 @@ fn too_many_planes_are_not_cut() {
 #[test]
 fn a_list_that_takes_too_long_is_handed_to_the_cpu() {
     // A round counts for all lanes of a vector, where the driver has those, up to 50,000 of one invocation.
-    let lanes = adapters::open(None).unwrap().lanes;
+    let lanes = adapters::shared(None).unwrap().lanes;
     for (rounds, handed_over) in [(40_000, 0), (60_000, 1)] {
         // The ray along −z at (1, 1) passes the corner of each box, 1.34 radii from the center.
         let place = |i| DVec3::new(1.95, 1.95, -3.0 - 2.1 * f64::from(i));

@@ -29,8 +29,8 @@ fn scene(name: &str, pixeldim: [u32; 2]) -> Scene {
     scene
 }
 
-fn open() -> Gpu {
-    adapters::open(None).unwrap_or_else(|error| panic!("{error}"))
+fn open() -> Arc<Gpu> {
+    adapters::shared(None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The words of a canvas.

@@ -33,7 +33,7 @@ fn times() {
     let mut changes = Changes::new();
     let mut other = scene.camera.viewpoint;
     other.x += scene.camera.worlddim.x / 8.0;
-    changes.set(Target::Viewpoint, other).unwrap();
+    changes.set(&scene, Target::VIEWPOINT, other).unwrap();
     let texts =
         [text.clone(), changes.write(&text).unwrap()].map(|text| String::from_utf8(text).unwrap());
     let file = File::new(&texts[0]);

@@ -7,8 +7,9 @@ use crate::image::compare;
 use crate::render::{Backend, Settings, render};
 use crate::scene::{load, load_from};
 
-fn gpu() -> Gpu {
-    crate::gpu::adapters::open(None).expect("this test needs a GPU adapter; a software one will do")
+fn gpu() -> std::sync::Arc<Gpu> {
+    let gpu = crate::gpu::adapters::shared(None);
+    gpu.expect("this test needs a GPU adapter; a software one will do")
 }
 
 /// Pixels of a scene of ours that differ from the certified picture, with and without preparation; of how many.

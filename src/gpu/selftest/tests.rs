@@ -296,6 +296,6 @@ fn the_shader_is_valid() {
 /// Needs an adapter, and fails without one.
 #[test]
 fn the_adapter_here_passes() {
-    let gpu = crate::gpu::adapters::open(None).unwrap();
+    let gpu = crate::gpu::adapters::shared(None).unwrap();
     assert_eq!(failures(&run(&gpu).unwrap()), None, "{}", gpu.name);
 }

@@ -1,5 +1,7 @@
 //! Random operands, runs on the GPU, and the tables of what was measured.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use plumb::gpu::adapters;
 use plumb::gpu::device::Gpu;
@@ -121,8 +123,8 @@ impl TrueRay {
 }
 
 /// An open adapter; without one there is no test.
-pub(crate) fn open() -> Gpu {
-    adapters::open(None).unwrap_or_else(|error| {
+pub(crate) fn open() -> Arc<Gpu> {
+    adapters::shared(None).unwrap_or_else(|error| {
         panic!("{error}. This test needs a GPU adapter, a software one will do: `sh scripts/test.sh` sees to it")
     })
 }

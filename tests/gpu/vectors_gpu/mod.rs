@@ -4,6 +4,8 @@
 
 mod operations;
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use plumb::gpu::adapters;
 use plumb::gpu::device::Gpu;
@@ -47,8 +49,8 @@ fn rotation(v: vec3f, w: vec3f) -> mat3x3f {
 ";
 
 /// An open adapter; without one there is no test.
-fn open(wanted: Option<&str>) -> Gpu {
-    adapters::open(wanted).unwrap_or_else(|error| {
+fn open(wanted: Option<&str>) -> Arc<Gpu> {
+    adapters::shared(wanted).unwrap_or_else(|error| {
         panic!("{error}. This test needs a GPU adapter, a software one will do: `sh scripts/test.sh` sees to it")
     })
 }
