@@ -185,7 +185,7 @@ pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
 /// # Errors
 /// As [`open`].
 pub fn open_beside(renderer: &Opened, wanted: Option<&str>) -> Result<Opened, GpuError> {
-    if !is_software(&renderer.adapter.get_info()) {
+    if renderer.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
         return Ok(renderer.clone());
     }
     static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
