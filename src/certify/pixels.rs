@@ -70,12 +70,14 @@ impl<'a> PixelDecider<'a> {
     }
 
     /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is
-    /// `top`. Of those of which something is known only the samples that are missing are traced, if that is enough.
+    /// `top`. Of those of which something is known only the samples that are missing are traced, if that is enough. Gives
+    /// up where `unwanted` says that nobody wants them any more.
     pub fn pixels(
         &self,
         top: u32,
         places: &[u32],
         known: &Partials,
+        unwanted: &StopRequested<'_>,
     ) -> Result<(Vec<Decided>, Tally), Halt> {
         let width = self.width as u32;
         // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
@@ -88,6 +90,9 @@ impl<'a> PixelDecider<'a> {
         let decided: Vec<(Vec<Decided>, Tally)> = if places.len() <= FEW {
             rows.map(|places| {
                 let (y, offsets) = row(places);
+                if unwanted() {
+                    return Err(Halt::Stopped);
+                }
                 self.piece(y, offsets.as_deref().map(Vec::as_slice), places, known)
             })
             .collect::<Result<_, _>>()?
@@ -102,6 +107,9 @@ impl<'a> PixelDecider<'a> {
                 })
                 .map(|(y, offsets, piece)| {
                     first.unless_later(piece[0] as usize, || {
+                        if unwanted() {
+                            return Err(Halt::Stopped);
+                        }
                         self.piece(y, offsets.as_deref().map(Vec::as_slice), piece, known)
                     })
                 })

@@ -6,7 +6,16 @@
 
 use std::io::Write as _;
 
-/// Ends the process with this exit code.
+/// Ends the process with this exit code, when all that it had to say is out.
+pub(crate) fn process(code: u8) -> ! {
+    // Where this fails nobody reads any more.
+    let _ = std::io::stdout().flush();
+    let _ = std::io::stderr().flush();
+    now(code)
+}
+
+/// Ends the process with this exit code, whatever its other threads do: one may wait for ever for somebody to read what
+/// it says, and hold stdout meanwhile.
 #[cfg_attr(
     unix,
     allow(
@@ -14,10 +23,7 @@ use std::io::Write as _;
         reason = "the system's call that ends a process is unsafe to call, as all of C's"
     )
 )]
-pub(crate) fn process(code: u8) -> ! {
-    // Where this fails nobody reads any more.
-    let _ = std::io::stdout().flush();
-    let _ = std::io::stderr().flush();
+pub(crate) fn now(code: u8) -> ! {
     #[cfg(unix)]
     // SAFETY: it takes a number and does not return.
     unsafe {

@@ -210,7 +210,7 @@ fn interrupted() {
         // The shell's prompt gets a line of its own.
         say::talk("\n");
     }
-    end::process(INTERRUPTED)
+    end::now(INTERRUPTED)
 }
 
 /// What clap ends with: a help text or a version on stdout, or a usage error on stderr.

@@ -3,13 +3,14 @@
 //! All workers make the same bytes, so it does not matter who makes which band. Finished bands go out in order, on the
 //! thread that asked for the picture, and no more of them than a few million pixels are made ahead. A worker that
 //! leaves, whatever the fault, gives its bands back; where it was found to be wrong, the rows of it that went out
-//! already become work for the others, to be compared. [`share`] says how large a band is to be, and when one is made
+//! already become work for the CPU, to be compared. [`share`] says how large a band is to be, and when one is made
 //! twice. Knows nothing of how bands are made.
 
 mod share;
 mod state;
 #[cfg(test)]
 mod tests;
+mod worker;
 
 use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -20,7 +21,7 @@ use crate::frame::{Emit, Halt};
 use crate::stopwatch::{Phase, Stopwatch};
 use state::State;
 
-pub(super) use state::{Activity, Finished, Kind, Role};
+pub(super) use worker::{Activity, Finished, Kind, Role};
 
 /// How often a worker that waits for a slower one looks whether it would be quicker itself.
 const LOOK: Duration = Duration::from_millis(5);
@@ -73,7 +74,7 @@ impl Bag {
     }
 
     /// Rows for a worker that would like `wish` of them, and can do with bands of `most` where they were cut by others;
-    /// waits for them if asked to.
+    /// waits for them if asked to. For the CPU there may be some until the rendering is over.
     pub(super) fn take(&self, worker: usize, wish: u32, most: u32, wait: bool) -> Taken {
         let started = Instant::now();
         let mut state = self.lock();
@@ -97,7 +98,7 @@ impl Bag {
     /// A band is finished.
     pub(super) fn deliver(&self, finished: Finished) {
         let compares = self.lock().compares(&finished.band.rows);
-        let hash = compares.then(|| state::hash(&finished.band));
+        let hash = compares.then(|| worker::hash(&finished.band));
         self.change(|state| state.deliver(finished, hash));
     }
 
@@ -147,6 +148,17 @@ impl Bag {
     /// Whether no other worker makes bands, or may make some.
     pub(super) fn is_alone(&self, worker: usize) -> bool {
         self.lock().is_alone(worker)
+    }
+
+    /// The rendering is over, whatever came of it.
+    pub(super) fn end(&self) {
+        self.change(|state| state.over = true);
+    }
+
+    /// Why rows that went out may be wrong, if that was found when there was nobody any more to compare them.
+    pub(super) fn doubt(&self) -> Option<Error> {
+        let why = self.lock().doubt()?;
+        Some(Error::Revoked(why.to_string()))
     }
 
     /// Whether the rendering has ended.

@@ -34,8 +34,9 @@ pub(super) fn run(rendering: &Rendering<'_>, me: usize) {
         };
         match traced {
             Ok((band, tally)) => bag.deliver(Finished::new(me, band, tally)),
-            Err(Halt::Stopped) if unwanted() => {}
-            Err(Halt::Stopped) => bag.fail(Error::Stopped),
+            Err(Halt::Stopped) if (rendering.stop)() => bag.fail(Error::Stopped),
+            // Another worker brought it. (It may be wanted again by now, from somebody else.)
+            Err(Halt::Stopped) => {}
             Err(halt) => bag.halt(&rows, halt),
         }
         watch.lap(Phase::Trace);

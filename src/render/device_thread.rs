@@ -5,6 +5,7 @@
 //! whoever wants no more rows of it hangs up.
 
 use std::ops::{ControlFlow, Range};
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
@@ -68,18 +69,28 @@ pub(super) struct Use<'a> {
     pub(super) stop: &'a StopRequested<'a>,
 }
 
+/// How many rows bands may have for a device, as its thread knows once it is ready.
+#[derive(Debug, Default)]
+pub(super) struct Heights {
+    /// The next one should have so many.
+    pub(super) wish: AtomicU32,
+    /// Those that others cut may have so many.
+    pub(super) most: AtomicU32,
+}
+
 /// The thread's end of the line to its worker.
 pub(super) struct Line {
     pub(super) orders: Receiver<Range<u32>>,
-    /// How many rows the next band should have.
-    pub(super) wish: Arc<AtomicU32>,
+    pub(super) heights: Arc<Heights>,
     pub(super) news: Sender<News>,
 }
 
 /// The thread, from its start to its end.
 pub(super) fn run(task: &DeviceTask, device: Use<'_>, line: &Line) {
     let mut watch = Stopwatch::start();
-    let ended = render(task, device, line, &mut watch);
+    // Drivers, and what stands on them, panic now and then: others make the picture then.
+    let ended = panic::catch_unwind(AssertUnwindSafe(|| render(task, device, line, &mut watch)));
+    let ended = ended.unwrap_or_else(|_| Err(device.gpu.lost(&"its thread panicked")));
     watch.lap(Phase::Release);
     let phases = watch.phases();
     // Nobody may listen any more.
@@ -105,9 +116,11 @@ fn render(
         dispatch_seconds: device.dispatch_seconds,
         canvas: device.canvas,
     };
+    let most = bands::tallest(device.gpu, &pipeline, &frame);
+    line.heights.most.store(most, Ordering::Relaxed);
     let mut is_ready = false;
     let next_rows = &mut |wish, wait| {
-        line.wish.store(wish, Ordering::Relaxed);
+        line.heights.wish.store(wish, Ordering::Relaxed);
         if !std::mem::replace(&mut is_ready, true) && line.news.send(News::Ready).is_err() {
             return Order::End;
         }

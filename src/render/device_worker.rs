@@ -5,13 +5,13 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::bag::Taken;
-use super::device_thread::{self, DeviceTask, Line, News, Spent, Use};
+use super::device_thread::{self, DeviceTask, Heights, Line, News, Spent, Use};
 use super::devices::{Device, Devices};
 use super::finish::{Finish, Unfinished};
 use super::rendering::Rendering;
@@ -24,9 +24,6 @@ use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::device::Gpu;
 use crate::shader::constants::LOOP_ITERATIONS;
 use crate::stopwatch::Phases;
-
-/// Most rows that a band from elsewhere may have for a device: its dispatches have whole workgroups of columns.
-const MOST: u32 = 1 << 16;
 
 /// Bands that a device is given at once: two that it works on, and one that is being finished.
 const AT_ONCE: usize = 3;
@@ -151,10 +148,10 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             rows: rendering.rows.clone(),
         };
         let (orders, receiver) = channel();
-        let wish = Arc::new(AtomicU32::new(1));
+        let heights = Arc::new(Heights::default());
         let line = Line {
             orders: receiver,
-            wish: Arc::clone(&wish),
+            heights: Arc::clone(&heights),
             news: sender,
         };
         match here {
@@ -177,7 +174,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     rendering.bag.fail(Error::Threads(error.to_string()));
                     return Gone::Done;
                 }
-                let gone = self.serve(here, orders, &wish, news);
+                let gone = self.serve(here, orders, &heights, news);
                 if matches!(gone, Gone::Fault(GpuError::Silent { .. })) {
                     devices.abandon();
                 }
@@ -202,7 +199,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     rendering.bag.fail(Error::Threads(error.to_string()));
                     return Gone::Done;
                 }
-                self.serve(here, orders, &wish, news)
+                self.serve(here, orders, &heights, news)
             }),
         }
     }
@@ -212,7 +209,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
         &mut self,
         here: &Here<'_>,
         orders: Sender<Range<u32>>,
-        wish: &AtomicU32,
+        heights: &Heights,
         news: &Receiver<News>,
     ) -> Gone {
         let bag = &self.rendering.bag;
@@ -221,9 +218,17 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
         let mut out = 0;
         loop {
             while self.ready.is_some() && out < AT_ONCE {
-                match bag.take(self.me, wish.load(Ordering::Relaxed), MOST, out == 0) {
-                    // A thread that has ended says why.
-                    Taken::Rows(rows) => out += usize::from(orders.send(rows).is_ok()),
+                let [wish, most] =
+                    [&heights.wish, &heights.most].map(|h| h.load(Ordering::Relaxed));
+                match bag.take(self.me, wish, most, out == 0) {
+                    Taken::Rows(rows) => {
+                        // Counted in any case: who has rows does not wait for more.
+                        out += 1;
+                        if orders.send(rows).is_err() {
+                            // A thread that has ended says why.
+                            break;
+                        }
+                    }
                     Taken::Later => break,
                     Taken::End if out == 0 => {
                         drop(orders);
@@ -247,12 +252,16 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     }
                     let finished = {
                         let _refining = bag.refining();
-                        self.rendering
-                            .on_threads(|| finish.band(self.me, *rendered, &mut self.beside))
+                        let unwanted = || !bag.wants(&rows);
+                        self.rendering.on_threads(|| {
+                            finish.band(self.me, *rendered, &mut self.beside, &unwanted)
+                        })
                     };
                     match finished {
                         Ok(finished) => bag.deliver(finished),
-                        Err(Unfinished::Halt(Halt::Stopped)) => bag.fail(Error::Stopped),
+                        Err(Unfinished::Halt(Halt::Stopped)) if stop() => bag.fail(Error::Stopped),
+                        // Another worker brought the band meanwhile.
+                        Err(Unfinished::Halt(Halt::Stopped)) => {}
                         Err(Unfinished::Halt(halt)) => bag.halt(&rows, halt),
                         Err(Unfinished::Wrong(wrong)) => {
                             return Gone::Wrong(wrong.of(&here.gpu().name));
@@ -264,8 +273,9 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     self.spent = spent;
                     if stop() {
                         bag.fail(Error::Stopped);
+                        return Gone::Done;
                     }
-                    return Gone::Done;
+                    return Gone::Fault(here.gpu().lost(&"its thread ended"));
                 }
                 Ok(News::Over) => return Gone::Done,
                 Ok(News::Found(_)) => {}

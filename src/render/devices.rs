@@ -3,6 +3,7 @@
 //!
 //! Loading a driver takes longer than many a picture, so nobody waits for it who has something else to do.
 
+use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -100,12 +101,18 @@ impl Devices {
     /// Asks for devices, and returns at once; `tell` hears what came of it.
     pub(super) fn ask(&self, wanted: Wanted, tell: Sender<News>) {
         let (open, given) = (Arc::clone(&self.open), self.given);
+        let told = tell.clone();
         let answer = move || {
+            // Drivers panic now and then, and somebody waits for this.
+            let found = panic::catch_unwind(AssertUnwindSafe(|| find(&open, given, &wanted)));
+            let found = found.unwrap_or(Found::None(GpuError::NoAdapter));
             // Nobody may listen any more.
-            let _ = tell.send(News::Found(find(&open, given, &wanted)));
+            let _ = told.send(News::Found(found));
         };
         // If there can be no thread, there can be no device either.
-        let _ = self.spawn("devices", answer);
+        if self.spawn("devices", answer).is_err() {
+            let _ = tell.send(News::Found(Found::None(GpuError::NoAdapter)));
+        }
     }
 
     /// Starts a thread that is waited for only when this is dropped.
@@ -159,6 +166,8 @@ fn find(open: &Mutex<Vec<Arc<Device>>>, given: bool, wanted: &Wanted) -> Found {
             Err(error) => return Found::None(error),
         };
         watch.lap(Phase::Instance);
+        // What went wrong with a device does not pass.
+        open.retain(|device| device.gpu.check().is_ok());
         let opened = adapters.iter().map(|adapter| {
             let gpu = adapters::shared_on(adapter)?;
             let known = open.iter().find(|device| Arc::ptr_eq(&device.gpu, &gpu));

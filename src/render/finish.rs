@@ -9,7 +9,7 @@ use super::report::Beside;
 use crate::certify::pixels::PixelDecider;
 use crate::certify::spot::spots;
 use crate::certify::{DecidedBy, Tally};
-use crate::frame::{Band, Halt};
+use crate::frame::{Band, Halt, StopRequested};
 use crate::gpu::bands::{Partials, Rendered};
 
 /// Takes bands from a device, one after the other.
@@ -69,36 +69,41 @@ impl<'a, 's> Finish<'a, 's> {
         }
     }
 
-    /// Finishes a band of the worker `me`.
+    /// Finishes a band of the worker `me`, unless `unwanted` says that nobody wants it any more.
     pub(super) fn band(
         &mut self,
         me: usize,
         rendered: Rendered,
         beside: &mut Beside,
+        unwanted: &StopRequested<'_>,
     ) -> Result<Finished, Unfinished> {
         let start = Instant::now();
-        let (mut band, tally, alone) = self.refine(rendered)?;
+        let (mut band, tally, alone) = self.refine(rendered, unwanted)?;
         beside.refine += start.elapsed().as_secs_f64();
         if !self.certified {
             return Ok(Finished::new(me, band, tally));
         }
         let start = Instant::now();
-        let checked = self.check(&mut band, &alone)?;
+        let checked = self.check(&mut band, &alone, unwanted)?;
         beside.spot_checks += start.elapsed().as_secs_f64();
         Ok(Finished::new(me, band, tally).checked(checked))
     }
 
     /// Decides the doubtful pixels. Returns the places of those of them of which the GPU has no part.
-    fn refine(&self, rendered: Rendered) -> Result<(Band, Tally, Vec<u32>), Halt> {
+    fn refine(
+        &self,
+        rendered: Rendered,
+        unwanted: &StopRequested<'_>,
+    ) -> Result<(Band, Tally, Vec<u32>), Halt> {
         let Rendered {
             mut band,
             doubtful,
             partials,
         } = rendered;
         let pixels = band.rgb.len() / 3;
-        let (decided, mut tally) = self
-            .decider
-            .pixels(band.rows.end - 1, &doubtful, &partials)?;
+        let (decided, mut tally) =
+            self.decider
+                .pixels(band.rows.end - 1, &doubtful, &partials, unwanted)?;
         if self.verdicts {
             band.verdicts = Some(vec![DecidedBy::Gpu; pixels]);
         }
@@ -121,11 +126,18 @@ impl<'a, 's> Finish<'a, 's> {
 
     /// Computes some pixels that the GPU has a part in again, and returns how many; those that the CPU decided alone are
     /// not worth a check.
-    fn check(&self, band: &mut Band, alone: &[u32]) -> Result<u64, Unfinished> {
+    fn check(
+        &self,
+        band: &mut Band,
+        alone: &[u32],
+        unwanted: &StopRequested<'_>,
+    ) -> Result<u64, Unfinished> {
         let top = band.rows.end - 1;
         let width = (band.rgb.len() / 3 / band.rows.len()) as u32;
         let places = spots(width, &band.rows, &band.rgb, alone);
-        let (decided, _) = self.decider.pixels(top, &places, &Partials::default())?;
+        let (decided, _) = self
+            .decider
+            .pixels(top, &places, &Partials::default(), unwanted)?;
         for (place, decided) in places.iter().zip(decided) {
             let gpu = *three(band, *place);
             if gpu != decided.bytes {

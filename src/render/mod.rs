@@ -7,6 +7,7 @@
 
 mod bag;
 mod cpu_worker;
+mod crew;
 mod device_thread;
 mod device_worker;
 mod devices;

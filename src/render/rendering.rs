@@ -5,15 +5,15 @@
 //! something, and those stop at once.
 
 use std::ops::Range;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::thread::{self, Scope};
-use std::time::Duration;
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
 
 use super::bag::{Bag, Kind, Role};
 use super::cpu_worker;
+use super::crew::{Crew, Over};
 use super::device_thread::News;
-use super::device_worker::{DeviceWorker, Here};
+use super::device_worker::Here;
 use super::devices::{Devices, Found, Wanted};
 use super::report::WorkerReport;
 use super::{Backend, Emit, Error, Live, Precision, Settings};
@@ -27,10 +27,6 @@ use crate::render::install_hint;
 use crate::scene::Scene;
 use crate::shader::pack::Packed;
 use crate::stopwatch::{Phase, Stopwatch};
-
-/// Loading a software driver and compiling a shader there takes about so long: what the CPU has done before then is not
-/// worth it.
-const STARTING: Duration = Duration::from_millis(100);
 
 /// Everything that workers need to know.
 pub(super) struct Rendering<'a> {
@@ -123,10 +119,10 @@ impl<'a> Rendering<'a> {
 
     /// The scene rounded to f32, for devices and lanes alike.
     pub(super) fn packed(&self) -> Arc<Packed> {
+        // On the thread that asks: one of those that were asked for may be waiting for this, and be the only one.
         let pack = || {
-            let exact_tracer = self.on_threads(|| self.decider.exact_tracer());
             Arc::new(Packed::prepared(
-                exact_tracer.bounded(),
+                self.decider.exact_tracer().bounded(),
                 self.scene,
                 self.settings,
             ))
@@ -145,7 +141,7 @@ impl<'a> Rendering<'a> {
 
     /// Whether the CPU makes the whole scene eight pixels at once. Software uses the same cores, and was never seen to be
     /// quicker then (docs/BENCH.md).
-    fn is_quick_on_cpu(&self) -> bool {
+    pub(super) fn is_quick_on_cpu(&self) -> bool {
         self.lanes().is_some_and(Lanes::are_whole)
     }
 
@@ -214,11 +210,9 @@ impl<'a> Rendering<'a> {
         let over = Mutex::new(vec![sender.clone()]);
         let late = found.is_empty() && wants_devices && !waits;
         let ended = thread::scope(|scope| {
-            let crew = Crew {
-                rendering: self,
-                scope,
-                over: &over,
-            };
+            let crew = Crew::new(self, scope, &over);
+            // Whatever comes of it, all hear that it is over.
+            let _over = Over::of(&self.bag, &over);
             // First those that others stand by for.
             for here in found {
                 crew.device(here, Role::Works);
@@ -231,15 +225,14 @@ impl<'a> Rendering<'a> {
                 crew.spawn("devices", move || crew.late(devices, asked, &news, &sender));
             }
             watch.lap(Phase::Threads);
-            let ended = self.bag.emit(emit, watch);
-            for listener in listeners(&over).drain(..) {
-                // Who listens no more has ended.
-                let _ = listener.send(News::Over);
-            }
-            ended
+            self.bag.emit(emit, watch)
         });
         watch.lap(Phase::Drain);
         ended?;
+        // A device may be found to be wrong by a band that another one brought, when the last one has gone out.
+        if let Some(error) = self.bag.doubt() {
+            return Err(error);
+        }
         let mut told =
             std::mem::take(&mut *self.told.lock().unwrap_or_else(PoisonError::into_inner));
         // Only now is it known which bands went out.
@@ -259,13 +252,12 @@ impl<'a> Rendering<'a> {
     ) -> Result<Vec<Here<'s>>, Error> {
         let found = match news.recv() {
             Ok(News::Found(found)) => found,
-            // The thread that finds devices could not be started.
             _ => Found::None(GpuError::NoAdapter),
         };
         let any_tracer = self.settings.backend == Backend::Auto;
         match found {
             Found::Devices(found, phases) => {
-                let mut here = Vec::new();
+                let (mut here, mut not_here) = (Vec::new(), Vec::new());
                 for device in found {
                     match device {
                         Ok(device) => here.push(Here::Opened {
@@ -273,13 +265,21 @@ impl<'a> Rendering<'a> {
                             phases,
                             devices,
                         }),
-                        Err(error)
-                            if any_tracer && !matches!(error, GpuError::NoSuchAdapter { .. }) =>
-                        {
-                            self.tell(|told| told.left.push(format!("{error}; the CPU renders")));
-                        }
-                        Err(error) => return Err(error.into()),
+                        Err(error) => not_here.push(error),
                     }
+                }
+                // Who asks for the GPU, and has several, may do with one of them.
+                let others = !here.is_empty();
+                for error in not_here {
+                    if !any_tracer && !others {
+                        return Err(error.into());
+                    }
+                    let who = if others {
+                        "others render"
+                    } else {
+                        "the CPU renders"
+                    };
+                    self.tell(|told| told.left.push(format!("{error}; {who}")));
                 }
                 if self.settings.precision == Precision::Fast {
                     here.truncate(1);
@@ -297,116 +297,6 @@ impl<'a> Rendering<'a> {
             }
             Found::None(error) => Err(error.into()),
             Found::Software(_) => Ok(Vec::new()),
-        }
-    }
-}
-
-/// Who wants to hear that a rendering is over.
-type Listeners = Mutex<Vec<Sender<News>>>;
-
-fn listeners(over: &Listeners) -> MutexGuard<'_, Vec<Sender<News>>> {
-    over.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The threads of a rendering.
-#[derive(Clone, Copy)]
-struct Crew<'scope, 'env, 'r> {
-    rendering: &'env Rendering<'r>,
-    scope: &'scope Scope<'scope, 'env>,
-    over: &'env Listeners,
-}
-
-impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
-    /// Starts a thread; if that cannot be, the rendering ends.
-    fn spawn(self, name: &str, work: impl FnOnce() + Send + 'scope) {
-        #[cfg(test)]
-        let work = super::tests::with_faults(work);
-        let started = thread::Builder::new()
-            .name(name.into())
-            .spawn_scoped(self.scope, work);
-        if let Err(error) = started {
-            self.rendering.bag.fail(Error::Threads(error.to_string()));
-        }
-    }
-
-    /// Lets a device work.
-    fn device(self, here: Here<'env>, role: Role) {
-        let (sender, news) = channel();
-        listeners(self.over).push(sender.clone());
-        // It may have ended before that listener was there to hear it.
-        if self.rendering.bag.is_over() {
-            return;
-        }
-        let number = self.rendering.bag.join(Kind::Device, role);
-        let worker = DeviceWorker::new(self.rendering, number);
-        self.spawn("device", move || worker.run(&here, sender, &news));
-    }
-
-    /// Waits for devices while the CPU works already, and lets them work.
-    fn late(
-        self,
-        devices: &'env Devices,
-        asked: bool,
-        news: &Receiver<News>,
-        sender: &Sender<News>,
-    ) {
-        let settings = self.rendering.settings;
-        let bag = &self.rendering.bag;
-        let ask_for_software = || {
-            bag.expect(true);
-            devices.ask(Wanted::new(settings, true), sender.clone());
-        };
-        if !asked {
-            if self.rendering.is_quick_on_cpu() || !bag.lasts(STARTING) {
-                return;
-            }
-            ask_for_software();
-        }
-        while let Ok(News::Found(found)) = news.recv() {
-            match found {
-                Found::Devices(devices_found, phases) => {
-                    for device in devices_found {
-                        match device {
-                            Ok(device)
-                                if device.gpu.software && self.rendering.is_quick_on_cpu() =>
-                            {
-                                self.rendering
-                                    .tell(|told| told.left_out = Some(device.gpu.name.clone()));
-                            }
-                            Ok(device) => {
-                                let role = if device.gpu.software {
-                                    Role::OnTrial
-                                } else {
-                                    Role::Works
-                                };
-                                self.device(
-                                    Here::Opened {
-                                        device,
-                                        phases,
-                                        devices,
-                                    },
-                                    role,
-                                );
-                            }
-                            Err(error) => {
-                                bag.expect(false);
-                                self.rendering.tell(|told| {
-                                    told.left.push(format!("{error}; the CPU renders"))
-                                });
-                            }
-                        }
-                    }
-                    return;
-                }
-                Found::Software(name) if self.rendering.is_quick_on_cpu() => {
-                    self.rendering.tell(|told| told.left_out = Some(name));
-                    return;
-                }
-                Found::Software(_) if !bag.lasts(STARTING) => return,
-                Found::Software(_) => ask_for_software(),
-                // That there is none is nothing to talk about: the CPU makes the same picture.
-                Found::None(_) => return bag.expect(false),
-            }
         }
     }
 }

@@ -207,6 +207,22 @@ fn wrong_bytes_that_were_handed_on_are_found() {
     }
 }
 
+/// A panic of whoever takes the bands goes on to who asked for the picture.
+#[test]
+fn nobody_waits_for_ever_for_who_panics() {
+    let large = {
+        let mut scene = scene();
+        scene.camera.pixeldim = [4000, 4000];
+        scene
+    };
+    let ended = std::panic::catch_unwind(|| {
+        render(&large, &settings(Backend::Cpu), &mut |_| {
+            panic!("of a test")
+        })
+    });
+    assert!(ended.is_err());
+}
+
 /// Doubtful pixels are decided on the CPU, few and many, with one sample and with several; and a single one that is not
 /// is seen in the picture.
 #[test]

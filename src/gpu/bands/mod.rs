@@ -25,6 +25,8 @@ pub use partial::Partials;
 
 /// Most pixels of one dispatch: 8 MiB of packed bytes, twice for two dispatches under way, twice for reading back.
 const MAX_PIXELS: u64 = 2 << 20;
+/// Most rows of a band that others cut: devices have at least so many workgroups in a direction.
+const MAX_ROWS: u32 = 1 << 16;
 /// Most bytes of sample offsets of one dispatch.
 const MAX_OFFSETS: u64 = 32 << 20;
 /// Seconds that a dispatch should take where nothing else waits for the device.
@@ -161,6 +163,13 @@ pub fn run(
             return Ok(kernels);
         }
     }
+}
+
+/// Most rows that a band may have whoever cut it: a dispatch has at least one workgroup's columns of all its rows.
+pub fn tallest(gpu: &Gpu, pipeline: &Pipeline, frame: &Frame<'_>) -> u32 {
+    let largest = largest_dispatch(gpu, pipeline, frame.width, &frame.rows);
+    let columns = frame.width.min(WORKGROUP);
+    (largest / u64::from(columns)).min(u64::from(MAX_ROWS)) as u32
 }
 
 /// Most pixels that one dispatch may have here.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use super::state::Role;
+use super::worker::Role;
 
 /// No band need have fewer pixels than this so that all end together: handing it out takes longer than making it.
 const LEAST: u64 = 4096;
@@ -64,6 +64,14 @@ impl Trial {
         matches!(self, Self::Warming)
     }
 
+    /// The speed that the one on trial has to beat with the band that it has.
+    pub(super) fn reference(&self) -> Option<f64> {
+        match self {
+            Self::Tried(reference) => Some(*reference),
+            _ => None,
+        }
+    }
+
     /// Whether a worker with this role may take a band now; `has_some` if it has one already.
     pub(super) fn admits(&self, role: Role, has_some: bool) -> bool {
         match (self, role) {
@@ -80,6 +88,15 @@ impl Trial {
     pub(super) fn took(&mut self, role: Role, rows: &Range<u32>) {
         if let (Self::Reference(begun @ None), Role::Works) = (&mut *self, role) {
             *begun = Some(rows.clone());
+        }
+    }
+
+    /// Nobody makes these rows any more. If they were to be the other one's measure and told nothing, another band is.
+    pub(super) fn closed(&mut self, rows: &Range<u32>) {
+        if let Self::Reference(begun) = self
+            && begun.as_ref() == Some(rows)
+        {
+            *begun = None;
         }
     }
 

@@ -2,119 +2,22 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hasher as _};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::Taken;
 use super::share::{Trial, height, pays_twice};
-use crate::certify::Tally;
-use crate::frame::{Band, Halt};
+use super::worker::{Activity, Finished, Kind, Role, Worker, hash};
+use crate::frame::Halt;
 use crate::render::Error;
 
-/// Pixels that may be made or under way below the first row that has not gone out: three of the largest bands, 18 MiB.
+/// Pixels that may be made or under way below the first row that has not gone out: three of the largest bands, 18 MiB of
+/// bytes.
 const AHEAD: u64 = 6 << 20;
 
-/// What a worker is here for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
-    /// It takes bands.
-    Works,
-    /// It takes bands when all who work have left.
-    StandsBy,
-    /// It is tried against those who work: it uses the same cores, so only one of them is worth its bands.
-    OnTrial,
-}
-
-/// What a worker did.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Activity {
-    /// Bands of it that went out, or that showed others to be right.
-    pub(crate) bands: u32,
-    /// What decided their pixels.
-    pub(crate) tally: Tally,
-    /// Sure pixels of them that were computed again, and were right.
-    pub(crate) spot_checks: u64,
-    /// How long it waited for rows.
-    pub(crate) waited: Duration,
-    /// Pixels a second, lately; none before its first band.
-    pub(crate) speed: Option<f64>,
-    /// Whether it was tried, and others were quicker.
-    pub(crate) outrun: bool,
-}
-
-/// What a worker is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// The CPU, whose cores also decide what devices leave open: that comes first.
-    Cpu,
-    /// A device.
-    Device,
-}
-
-#[derive(Debug)]
-struct Worker {
-    kind: Kind,
-    role: Role,
-    /// Whether it could take rows now, as far as it itself is concerned.
-    ready: bool,
-    left: bool,
-    activity: Activity,
-    last_delivery: Option<Instant>,
-}
-
-impl Worker {
-    fn new(kind: Kind, role: Role) -> Self {
-        Self {
-            kind,
-            role,
-            ready: false,
-            left: false,
-            activity: Activity::default(),
-            last_delivery: None,
-        }
-    }
-}
-
-/// A band that was brought back.
-#[derive(Debug)]
-pub(crate) struct Finished {
-    worker: usize,
-    pub(super) band: Band,
-    pub(super) tally: Tally,
-    pub(super) spot_checks: u64,
-    /// A hash of its bytes, where the worker may be found to be wrong later.
-    hash: Option<u64>,
-}
-
-impl Finished {
-    pub(crate) fn new(worker: usize, band: Band, tally: Tally) -> Self {
-        Self {
-            worker,
-            band,
-            tally,
-            spot_checks: 0,
-            hash: None,
-        }
-    }
-
-    /// The same from a worker that computed so many of its pixels once more, and may still be found to be wrong.
-    pub(crate) fn checked(self, spot_checks: u64) -> Self {
-        let hash = Some(hash(&self.band));
-        Self {
-            spot_checks,
-            hash,
-            ..self
-        }
-    }
-}
-
-pub(super) fn hash(band: &Band) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    hasher.write(&band.rgb);
-    hasher.finish()
-}
+/// Seconds that the one on trial has at least, however quick the other one is.
+const PATIENCE: f64 = 0.5;
 
 /// What rows that went out already must come to: the hash of their bytes, and the error if they do not.
 type Check = (u64, Arc<str>);
@@ -249,20 +152,35 @@ impl State {
         if self.is_over() || self.workers[me].left {
             return Taken::End;
         }
+        let is_cpu = self.workers[me].kind == Kind::Cpu;
+        if is_cpu && self.refining > 0 {
+            return Taken::Later;
+        }
+        // What went out and may be wrong is for the CPU alone, whatever else it does: another device may be of the
+        // same kind, and wrong alike.
+        if is_cpu && let Some(job) = self.next_check() {
+            return self.hand_out(me, job);
+        }
+        if self.workers[me].role == Role::Works && self.is_overdue() {
+            self.decide(Role::Works);
+        }
         let stands_by = self.workers[me].role == Role::StandsBy && self.at_work().next().is_some();
-        let is_busy = self.refining > 0 && self.workers[me].kind == Kind::Cpu;
         let has_some = self
             .out
             .iter()
             .any(|out| out.by.iter().any(|(worker, _)| *worker == me));
-        if stands_by || is_busy || !self.trial.admits(self.workers[me].role, has_some) {
+        if stands_by || !self.trial.admits(self.workers[me].role, has_some) {
             return Taken::Later;
         }
-        let Some(job) = self.next_job(me, wish, most) else {
+        let Some(job) = self.next_job(me, wish) else {
             return self.twice(me, most);
         };
+        self.trial.took(self.workers[me].role, &job.rows);
+        self.hand_out(me, job)
+    }
+
+    fn hand_out(&mut self, me: usize, job: Job) -> Taken {
         let rows = job.rows.clone();
-        self.trial.took(self.workers[me].role, &rows);
         self.out.push(Out {
             job,
             by: vec![(me, Instant::now())],
@@ -270,9 +188,17 @@ impl State {
         Taken::Rows(rows)
     }
 
+    /// Rows that went out and are to be compared: just as they went out.
+    fn next_check(&mut self) -> Option<Job> {
+        let mut jobs = self.jobs.iter();
+        let key = *jobs.find(|(_, job)| job.check.is_some())?.0;
+        self.jobs.remove(&key)
+    }
+
     /// The uppermost rows that nobody makes; not if they are too far ahead of what went out.
-    fn next_job(&mut self, me: usize, wish: u32, most: u32) -> Option<Job> {
-        let (key, job) = match self.jobs.first_key_value() {
+    fn next_job(&mut self, me: usize, wish: u32) -> Option<Job> {
+        let mut jobs = self.jobs.iter();
+        let (key, job) = match jobs.find(|(_, job)| job.check.is_none()) {
             Some((key, job)) => (Some(*key), job.clone()),
             None if self.next > self.rows.start => {
                 let rows = self.rows.start..self.next;
@@ -280,13 +206,6 @@ impl State {
             }
             None => return None,
         };
-        // What is compared is compared as it went out.
-        if job.check.is_some() {
-            if job.rows.len() > most as usize {
-                return None;
-            }
-            return key.and_then(|key| self.jobs.remove(&key));
-        }
         let wish = if self.band_rows.is_some() {
             wish
         } else {
@@ -334,18 +253,24 @@ impl State {
 
     /// A band that somebody else makes, if that is the quicker way to it.
     fn twice(&mut self, me: usize, most: u32) -> Taken {
-        let nothing_left = if self.rows_left() == 0 && self.out.is_empty() {
-            Taken::End
-        } else {
-            Taken::Later
-        };
+        // The CPU stays until all is over: a device that is still busy with a band that another one brought may be found
+        // to be wrong, and all that it brought is to be made again then. Nobody stands by for a device that is done.
+        let is_device = self.workers[me].kind == Kind::Device;
+        if is_device && self.rows_left() == 0 && self.out.is_empty() {
+            self.leave(me);
+            return Taken::End;
+        }
         let (Some(mine), now) = (self.workers[me].activity.speed, Instant::now()) else {
-            return nothing_left;
+            return Taken::Later;
         };
         let width = self.width;
         let workers = &self.workers;
         let slow = |out: &&mut Out| match out.by[..] {
-            [(other, since)] if other != me && out.job.rows.len() <= most as usize => {
+            [(other, since)]
+                if other != me
+                    && out.job.check.is_none()
+                    && out.job.rows.len() <= most as usize =>
+            {
                 let pixels = out.job.rows.len() as f64 * width as f64;
                 pays_twice(pixels, mine, workers[other].activity.speed, now - since)
             }
@@ -356,8 +281,14 @@ impl State {
                 out.by.push((me, now));
                 Taken::Rows(out.job.rows.clone())
             }
-            None => nothing_left,
+            None => Taken::Later,
         }
+    }
+
+    /// Why rows that went out may be wrong, if nobody has compared them.
+    pub(super) fn doubt(&self) -> Option<Arc<str>> {
+        let mut checks = self.jobs.values().filter_map(|job| job.check.as_ref());
+        checks.next().map(|(_, why)| Arc::clone(why))
     }
 
     fn give_back(&mut self, job: Job) {
@@ -384,18 +315,23 @@ impl State {
     }
 
     /// The first who brings a band counts.
-    pub(super) fn deliver(&mut self, finished: Finished, hash: Option<u64>) {
+    pub(super) fn deliver(&mut self, finished: Finished, known: Option<u64>) {
         let me = finished.worker;
         let Some(out) = self.close(&finished.band.rows) else {
             return;
         };
         self.learn(me, &out);
-        match out.job.check {
-            None => {
-                self.finished.insert(finished.band.rows.end, Ok(finished));
-            }
-            Some((expected, _)) if hash == Some(expected) => self.count(&finished),
-            Some((_, why)) => self.fail(Error::Revoked(why.to_string())),
+        self.trial.closed(&out.job.rows);
+        let Some((expected, why)) = out.job.check else {
+            self.finished.insert(finished.band.rows.end, Ok(finished));
+            return;
+        };
+        // That it is to be compared may be news since the caller asked.
+        let found = known.or(finished.hash);
+        if found.unwrap_or_else(|| hash(&finished.band)) == expected {
+            self.count(&finished);
+        } else {
+            self.fail(Error::Revoked(why.to_string()));
         }
     }
 
@@ -424,22 +360,46 @@ impl State {
             .trial
             .learns(self.workers[me].role, &out.job.rows, speed, left)
         {
-            for worker in &mut self.workers {
-                match (worker.role, quicker) {
-                    (Role::OnTrial, Role::OnTrial) => worker.role = Role::Works,
-                    (Role::OnTrial, _) => {
-                        worker.left = true;
-                        worker.activity.outrun = true;
-                    }
-                    (Role::Works, Role::OnTrial) => worker.role = Role::StandsBy,
-                    _ => {}
+            self.decide(quicker);
+        }
+    }
+
+    /// The trial is over: whoever was quicker makes the rest.
+    fn decide(&mut self, quicker: Role) {
+        for number in 0..self.workers.len() {
+            let worker = &mut self.workers[number];
+            match (worker.role, quicker) {
+                (Role::OnTrial, Role::OnTrial) => worker.role = Role::Works,
+                (Role::OnTrial, _) => {
+                    worker.activity.outrun = true;
+                    self.leave(number);
                 }
+                (Role::Works, Role::OnTrial) => worker.role = Role::StandsBy,
+                _ => {}
             }
         }
     }
 
+    /// Whether the one on trial has had its band for so long that it is the slower one, whenever it brings it.
+    fn is_overdue(&self) -> bool {
+        let Some(reference) = self.trial.reference() else {
+            return false;
+        };
+        let on_trial = |number: usize| self.workers[number].role == Role::OnTrial;
+        self.out.iter().any(|out| {
+            let pixels = out.job.rows.len() as f64 * self.width as f64;
+            let is_late = |since: Instant| {
+                since.elapsed().as_secs_f64() > PATIENCE.max(4.0 * pixels / reference)
+            };
+            out.by
+                .iter()
+                .any(|(number, since)| on_trial(*number) && is_late(*since))
+        })
+    }
+
     pub(super) fn halt(&mut self, rows: &Range<u32>, halt: Halt) {
         if let Some(out) = self.close(rows) {
+            self.trial.closed(rows);
             match out.job.check {
                 None => {
                     self.finished.insert(rows.end, Err(halt));
@@ -465,6 +425,7 @@ impl State {
         for mut out in std::mem::take(&mut self.out) {
             out.by.retain(|(worker, _)| *worker != me);
             if out.by.is_empty() {
+                self.trial.closed(&out.job.rows);
                 self.give_back(out.job);
             } else {
                 kept.push(out);
@@ -477,7 +438,11 @@ impl State {
     pub(super) fn revoke(&mut self, me: usize, why: &str) {
         let why: Arc<str> = why.into();
         self.leave(me);
-        self.workers[me].activity = Activity::default();
+        let activity = &mut self.workers[me].activity;
+        *activity = Activity {
+            waited: activity.waited,
+            ..Activity::default()
+        };
         let (wrong, right) =
             std::mem::take(&mut self.finished)
                 .into_iter()

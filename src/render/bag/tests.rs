@@ -1,5 +1,7 @@
 //! Workers of all kinds share a picture whose bytes are known; what they do wrong is noticed, and loses nothing.
 
+mod late;
+
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;

@@ -126,6 +126,22 @@ fn any_mix_of_workers_makes_the_same_bytes() {
     }
 }
 
+/// One thread is enough for a device and the CPU, whichever of them asks for the packed scene first.
+#[test]
+fn one_thread_is_enough() {
+    let devices = devices(1, false);
+    let wanted = Settings {
+        threads: Some(1),
+        ..settings(Backend::Auto)
+    };
+    let right = right();
+    for _ in 0..100 {
+        let (report, bytes) = on(&devices, &wanted);
+        report.unwrap();
+        assert!(bytes == right);
+    }
+}
+
 /// Software is tried where the CPU makes one pixel after the other; whoever is quicker, the bytes are the same, and
 /// it is said which one was left out.
 #[test]
