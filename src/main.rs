@@ -2,9 +2,7 @@
 
 mod cli;
 
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
+fn main() {
     quiet_the_loader();
     cli::main()
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// What a stretch of time was for. All phases are of the thread that renders, one after the other.
+/// What a stretch of time of a thread was for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// Loading the driver, once a process, and listing adapters.
@@ -17,7 +17,9 @@ pub enum Phase {
     Device,
     /// Finding out whether the device can be trusted: the self-test, or looking up that it was passed.
     Selftest,
-    /// Starting the threads that the CPU's part runs on.
+    /// Waiting for devices, where the CPU cannot begin.
+    Devices,
+    /// Starting threads.
     Threads,
     /// Preparing the scene, exactly, and where the samples pass.
     Prepare,
@@ -35,13 +37,15 @@ pub enum Phase {
     Wait,
     /// Taking pixels from the device's memory into bands.
     Readback,
-    /// Waiting until a band could be handed over, since those before it were not finished yet.
+    /// Waiting for rows to make.
     Held,
-    /// Waiting, after the last dispatch, until all bands were finished.
+    /// Waiting, after the last band, for those who had not heard yet that it was the last.
     Drain,
     /// Tracing whole bands on the CPU.
     Trace,
-    /// Handing those bands on: encoding, writing.
+    /// Waiting for the next band in order.
+    Bands,
+    /// Handing bands on: encoding, writing.
     Emit,
     /// Giving back the memory of scene, shader and buffers.
     Release,
@@ -49,10 +53,11 @@ pub enum Phase {
 
 impl Phase {
     /// Every phase, in about the order in which they come; each stands at its own number.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 19] = [
         Self::Instance,
         Self::Device,
         Self::Selftest,
+        Self::Devices,
         Self::Threads,
         Self::Prepare,
         Self::Pack,
@@ -65,6 +70,7 @@ impl Phase {
         Self::Held,
         Self::Drain,
         Self::Trace,
+        Self::Bands,
         Self::Emit,
         Self::Release,
     ];
@@ -75,6 +81,7 @@ impl Phase {
             Self::Instance => "instance",
             Self::Device => "device",
             Self::Selftest => "selftest",
+            Self::Devices => "devices",
             Self::Threads => "threads",
             Self::Prepare => "prepare",
             Self::Pack => "pack",
@@ -87,6 +94,7 @@ impl Phase {
             Self::Held => "held",
             Self::Drain => "drain",
             Self::Trace => "trace",
+            Self::Bands => "bands",
             Self::Emit => "emit",
             Self::Release => "release",
         }
@@ -101,6 +109,15 @@ impl Phases {
     /// What a phase took.
     pub fn get(&self, phase: Phase) -> f64 {
         self.0[phase as usize]
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(mut self, other: &Self) -> Self {
+        for (mine, other) in self.0.iter_mut().zip(other.0) {
+            *mine += other;
+        }
+        self
     }
 
     /// What all of them took.

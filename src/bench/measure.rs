@@ -21,7 +21,7 @@ use crate::gpu::{GpuError, bands};
 use crate::image::Picture;
 use crate::jitter::Jitter;
 use crate::prepare::Prepared;
-use crate::render::{self, Backend, Precision, Settings, render};
+use crate::render::{self, Backend, Devices, Precision, Report, Settings, render_with};
 use crate::scene::Scene;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::feature_set::FeatureSet;
@@ -44,6 +44,8 @@ pub struct Subject<'a> {
     pub rows: Vec<u32>,
     /// What their pixels truly see, and how far those distances may be off.
     pub hits: Vec<(PixelHit, f64)>,
+    /// What frames are rendered on: opened once, since a frame is measured on an open device.
+    pub devices: &'a Devices,
 }
 
 /// What a way was measured to do.
@@ -88,8 +90,8 @@ impl From<TextbookError> for Unmeasured {
 struct Frame {
     picture: Picture,
     verdicts: Vec<DecidedBy>,
-    report: render::Report,
-    /// Seconds, opening and closing the device apart.
+    report: Report,
+    /// Seconds, on an open device.
     seconds: f64,
 }
 
@@ -167,7 +169,7 @@ impl Subject<'_> {
         for _ in 0..self.repeat {
             let frame = self.frame(&settings, false)?;
             frames.push(frame.seconds);
-            kernels.push(frame.report.seconds.phases.get(Phase::Trace));
+            kernels.push(traced(&frame.report));
         }
         // The true distances are those of this way, so it is compared with itself.
         let hits: Vec<PixelHit> = self.hits.iter().map(|(seen, _)| *seen).collect();
@@ -175,7 +177,7 @@ impl Subject<'_> {
             picture: warm_up.picture,
             t: self.compared(&hits),
             doubtful_percent: None,
-            kernel: times(warm_up.report.seconds.phases.get(Phase::Trace), kernels)?,
+            kernel: times(traced(&warm_up.report), kernels)?,
             frame: times(warm_up.seconds, frames)?,
         })
     }
@@ -189,7 +191,7 @@ impl Subject<'_> {
         let [width, height] = self.scene.camera.pixeldim;
         let mut rgb = Vec::with_capacity(3 * width as usize * height as usize);
         let mut verdicts = Vec::new();
-        let report = render(self.scene, &settings, &mut |band| {
+        let report = render_with(self.scene, &settings, self.devices, &mut |band| {
             rgb.extend_from_slice(&band.rgb);
             verdicts.extend(band.verdicts.iter().flatten());
             Ok(())
@@ -199,21 +201,17 @@ impl Subject<'_> {
             Err(render::Error::Gpu(error)) => return Err(error.into()),
             report => report?,
         };
-        let opening: f64 = [Phase::Instance, Phase::Device, Phase::Selftest]
-            .map(|phase| report.seconds.phases.get(phase))
-            .iter()
-            .sum();
         Ok(Frame {
             picture: Picture { width, height, rgb },
             verdicts,
-            seconds: report.seconds.total - opening,
+            seconds: report.seconds.total - report.seconds.phases.get(Phase::Devices),
             report,
         })
     }
 
     /// The dispatches alone, of a shader that is compiled once and has run before.
     fn kernel(&self, gpu: &Gpu, packed: &Packed, settings: &Settings) -> Result<Times, Unmeasured> {
-        let features = FeatureSet::new(packed, settings, gpu.lanes);
+        let features = FeatureSet::new(packed, settings, gpu.lanes).for_a_file();
         let wgsl = compose(packed, &features, Entry::Picture);
         let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
         let [width, height] = self.scene.camera.pixeldim;
@@ -233,6 +231,7 @@ impl Subject<'_> {
                 gpu,
                 &pipeline,
                 &frame,
+                &mut bands::from_the_top(0..height),
                 &|| false,
                 watch,
                 hand_on,
@@ -311,6 +310,12 @@ impl Subject<'_> {
             }
         }
     }
+}
+
+/// Seconds that the CPU traced bands.
+fn traced(report: &Report) -> f64 {
+    let workers = report.workers.iter();
+    workers.map(|worker| worker.phases.get(Phase::Trace)).sum()
 }
 
 fn times(warm_up: f64, runs: Vec<f64>) -> Result<Times, Unmeasured> {

@@ -11,6 +11,7 @@ use super::{Report, SceneReport, Seconds, WayReport, truth};
 use crate::gpu;
 use crate::gpu::device::Gpu;
 use crate::image::Picture;
+use crate::render::Devices;
 use crate::scene::{Scene, Shape};
 use crate::settings::Settings;
 use crate::shader::pack::Packed;
@@ -57,9 +58,10 @@ pub fn bench(asked: &Asked, step: &mut dyn FnMut()) -> Result<Report, BenchError
     let opened = gpu::adapters::shared(None);
     let gpu = opened.as_deref().map_err(ToString::to_string);
     let mut scenes = Vec::new();
+    let devices = Devices::new();
     for (name, file, scene) in &asked.scenes {
         let gpu = gpu.as_ref().map(|gpu| *gpu).map_err(String::as_str);
-        let report = one(asked, name, file, scene, gpu, step);
+        let report = one(asked, name, file, scene, (gpu, &devices), step);
         scenes.push(report.map_err(|source| BenchError {
             scene: name.clone(),
             source,
@@ -78,7 +80,7 @@ fn one(
     name: &str,
     file: &std::path::Path,
     scene: &Scene,
-    gpu: Result<&Gpu, &str>,
+    (gpu, devices): (Result<&Gpu, &str>, &Devices),
     step: &mut dyn FnMut(),
 ) -> Result<SceneReport, Unmeasured> {
     let settings = Settings::default();
@@ -91,6 +93,7 @@ fn one(
         cache: asked.cache.clone(),
         hits: truth::hits(scene, &settings, &rows),
         rows,
+        devices,
     };
     let rays = truth::rays(scene, &settings);
     step();

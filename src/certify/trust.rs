@@ -11,13 +11,27 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::gpu::device::Gpu;
-use crate::gpu::selftest;
+use crate::gpu::{GpuError, selftest};
 
 /// What passed since the process started.
 static PASSED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
 
 fn passed() -> MutexGuard<'static, BTreeSet<String>> {
     PASSED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Refuses a device that does not pass the test.
+///
+/// # Errors
+/// [`GpuError::Untrusted`].
+pub fn check(gpu: &Gpu, folder: Option<&Path>) -> Result<(), GpuError> {
+    match doubts(gpu, folder) {
+        None => Ok(()),
+        Some(failures) => Err(GpuError::Untrusted {
+            adapter: gpu.name.clone(),
+            failures,
+        }),
+    }
 }
 
 /// Tests the device, unless it is known to pass. Returns what failed, if anything; that the test cannot be run is a
@@ -111,6 +125,12 @@ pub(crate) mod tests {
     /// Makes all adapters unknown to this thread, or not any more.
     pub(crate) fn forget_all(forget: bool) {
         FORGETFUL.set(forget);
+    }
+
+    /// Makes another thread forget what this one does.
+    pub(crate) fn carry() -> Box<dyn FnOnce() + Send> {
+        let forgetful = FORGETFUL.get();
+        Box::new(move || FORGETFUL.set(forgetful))
     }
 
     #[test]

@@ -142,13 +142,23 @@ written beside and renamed when it is whole; devices, pipes and links are writte
     /// Only rows A up to, not including, B, counted from the bottom: 0..100, ..100, 380.. (the picture has B−A rows)
     #[arg(long, value_name = "A..B", value_parser = rows)]
     pub(crate) rows: Option<Rows>,
-    /// Which tracer: the GPU if there is one, else the CPU (auto); the GPU or an error; the CPU
+    /// Who makes the picture: whoever is there (auto); GPUs, or an error; the CPU
     #[arg(
         long,
         value_name = "TRACER",
         value_enum,
         ignore_case = true,
-        default_value_t
+        default_value_t,
+        long_help = "\
+Who makes the picture. It changes no byte.
+
+auto: the CPU begins at once, every GPU joins as soon as its driver is loaded, and they share the picture. A driver that \
+is software, such as lavapipe or SwiftShader, uses the CPU's cores: it takes part only where it is the quicker of the two.
+
+gpu: GPUs alone, software too, or an error where there is none; what they are not sure of the CPU decides, and it goes \
+on where they fail.
+
+cpu: the CPU alone; no driver is loaded."
     )]
     pub(crate) backend: BackendName,
     /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`); without it

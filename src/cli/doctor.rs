@@ -109,7 +109,9 @@ fn is_trusted(adapter: &AdapterSummary) -> bool {
 fn verdict(adapters: &[AdapterSummary], chosen: Option<usize>, wanted: Option<&str>) -> String {
     let named = wanted.map(|part| format!("{VARIABLE}={part}"));
     if let (Some(named), None, false) = (&named, chosen, adapters.is_empty()) {
-        return format!("{named} names none of the adapters, so plumb renders with --backend cpu alone.");
+        return format!(
+            "{named} names none of the adapters, so plumb renders with --backend cpu alone."
+        );
     }
     let Some(adapter) = chosen.and_then(|i| adapters.get(i)) else {
         let on_cpu = "plumb renders on the CPU";
@@ -255,9 +257,15 @@ mod tests {
     fn the_environments_choice_is_told() {
         let mut two = [adapter("a", None), adapter("b", Some("it is too old"))];
         let names = verdict(&two, Some(0), Some("A"));
-        assert!(names.contains("plumb renders on a: PLUMB_ADAPTER=A names it"), "{names}");
+        assert!(
+            names.contains("plumb renders on a: PLUMB_ADAPTER=A names it"),
+            "{names}"
+        );
         let broken = verdict(&two, Some(1), Some("b"));
-        assert!(broken.contains("plumb cannot render on b: it is too old"), "{broken}");
+        assert!(
+            broken.contains("plumb cannot render on b: it is too old"),
+            "{broken}"
+        );
         let none = verdict(&two, None, Some("c"));
         assert!(none.contains("PLUMB_ADAPTER=c names none"), "{none}");
         two[1].problem = None;

@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod doctor;
 mod dump;
+mod end;
 mod inherited;
 mod outputs;
 mod picture;
@@ -25,7 +26,6 @@ mod values;
 
 use std::env;
 use std::path::Path;
-use std::process::{self, ExitCode};
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -44,7 +44,7 @@ const DONE: u8 = 0;
 const NO: u8 = 1;
 const FAILED: u8 = 2;
 /// 128 + SIGINT, as a shell reports it; a SIGTERM looks the same from here.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: u8 = 130;
 
 const LONG_ABOUT: &str = "\
 plumb is a ray tracer on the GPU: a scene file in, a picture out. Without a GPU the same tracer runs on the CPU.
@@ -160,8 +160,13 @@ pub(crate) enum Answer {
     Nothing,
 }
 
-/// Runs the program.
-pub(crate) fn main() -> ExitCode {
+/// Runs the program, and ends it.
+pub(crate) fn main() -> ! {
+    end::process(run())
+}
+
+/// Runs the program; returns its exit code.
+fn run() -> u8 {
     // The GPU's library tells of failures as errors that we print ourselves; the rest only who asks wants to read.
     let quiet = env_logger::Env::default().default_filter_or("error,wgpu=off,naga=off");
     env_logger::Builder::from_env(quiet).init();
@@ -182,7 +187,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Doctor(args)) => doctor::run(&args),
         Some(Command::Completions(args)) => completions::run(&args),
     };
-    ExitCode::from(match ended {
+    match ended {
         Ok(Answer::Yes) => DONE,
         Ok(Answer::No) => NO,
         Ok(Answer::Bad) => FAILED,
@@ -195,7 +200,7 @@ pub(crate) fn main() -> ExitCode {
             say::error(&error);
             FAILED
         }
-    })
+    }
 }
 
 /// Ctrl-C, SIGTERM or SIGHUP: nothing half done remains.
@@ -205,17 +210,17 @@ fn interrupted() {
         // The shell's prompt gets a line of its own.
         say::talk("\n");
     }
-    process::exit(INTERRUPTED);
+    end::process(INTERRUPTED)
 }
 
 /// What clap ends with: a help text or a version on stdout, or a usage error on stderr.
-fn usage(error: &clap::Error) -> ExitCode {
+fn usage(error: &clap::Error) -> u8 {
     // Where even this cannot be printed (a closed pipe), the exit code is all that is left to say.
     let printed = error.print();
     if !error.use_stderr() {
         return match printed {
-            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => ExitCode::from(FAILED),
-            _ => ExitCode::SUCCESS,
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => FAILED,
+            _ => DONE,
         };
     }
     // A picture's name behind the scene's, as other programs have it.
@@ -240,7 +245,7 @@ fn usage(error: &clap::Error) -> ExitCode {
             ));
         }
     }
-    ExitCode::from(FAILED)
+    FAILED
 }
 
 /// The whole command, for completions.

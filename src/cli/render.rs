@@ -4,6 +4,7 @@
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -13,7 +14,7 @@ use plumb::diagnostic::visible_text;
 use plumb::files::is_stream;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
-use plumb::render::{self, Backend, PixelFault, Report, Settings};
+use plumb::render::{self, Backend, Devices, PixelFault, Report, Settings};
 use plumb::scene::{Scene, list_model, remarks};
 use serde::Serialize;
 
@@ -92,6 +93,13 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         say::talk(&String::from_utf8_lossy(&listing));
     }
     command.run()
+}
+
+/// The process's devices. They are never closed, and the process does not end by returning from `main` (see `end`): who
+/// has a picture does not wait for a driver that may still be loading.
+fn devices() -> &'static Devices {
+    static DEVICES: OnceLock<Devices> = OnceLock::new();
+    DEVICES.get_or_init(Devices::new)
 }
 
 impl<'a> RenderCommand<'a> {
@@ -242,7 +250,7 @@ impl<'a> RenderCommand<'a> {
         let [_, height] = self.scene.camera.pixeldim;
         let rows = settings.rows_of(height);
         let mut progress = Progress::new(rows.len() as u64, self.talks());
-        let rendered = render::render(&self.scene, settings, &mut |band| {
+        let rendered = render::render_with(&self.scene, settings, devices(), &mut |band| {
             outputs.write(band)?;
             progress.add(band.rows.len() as u64);
             Ok(())

@@ -16,18 +16,46 @@ pub(crate) fn summary(target: &Target, report: &Report, took: Duration) -> Strin
     if end - start != report.height {
         size += &format!(" (rows {start}..{end} of {})", report.height);
     }
-    let tracer = match (report.backend, &report.adapter) {
-        // Its driver, in brackets behind the name, is told by --json.
-        (Backend::Gpu, Some(adapter)) => {
-            format!("GPU {}", adapter.split(" [").next().unwrap_or(adapter))
-        }
-        _ => format!("CPU, {}", count(report.threads.unwrap_or(1), "thread")),
-    };
     let seconds = took.as_secs_f64();
-    format!(
-        "{target}: {size}, {tracer}, {seconds:.2} s; {}",
-        decided(report)
-    )
+    let (who, decided) = (makers(report), decided(report));
+    let mut line = format!("{target}: {size}, {who}, {seconds:.2} s; {decided}");
+    let outrun = report.workers.iter().find(|worker| worker.is_outrun());
+    if let Some(name) = report
+        .left_out
+        .as_deref()
+        .or(outrun.map(|worker| &*worker.name))
+    {
+        line += &format!(
+            "; {} is software and slower here: --backend gpu takes it",
+            short(name)
+        );
+    }
+    line
+}
+
+/// Who made the picture, and if there are several, how much of it.
+fn makers(report: &Report) -> String {
+    let made = || report.workers.iter().filter(|worker| worker.bands > 0);
+    let makers: Vec<_> = made()
+        .map(|worker| {
+            let who = if worker.is_device() {
+                format!("GPU {}", short(&worker.name))
+            } else {
+                format!("CPU, {}", count(report.threads.unwrap_or(1), "thread"))
+            };
+            if made().count() == 1 {
+                return who;
+            }
+            let percent = 100.0 * worker.pixels as f64 / report.pixels as f64;
+            format!("{who} ({percent:.0} %)")
+        })
+        .collect();
+    makers.join(" and ")
+}
+
+/// An adapter's name; its driver, in brackets behind it, is told by --json.
+fn short(adapter: &str) -> &str {
+    adapter.split(" [").next().unwrap_or(adapter)
 }
 
 /// What decided the pixels, in short.
@@ -63,8 +91,8 @@ pub(crate) fn told(report: &Report) -> Vec<String> {
     let mut lines: Vec<String> = report.fallback.iter().cloned().collect();
     if let Some(revoked) = &report.revoked {
         lines.push(format!(
-            "{revoked}: its certificate is revoked, and the CPU rendered the picture. Please report this, with `plumb \
-            doctor`"
+            "{revoked}: its certificate is revoked, and others made its part of the picture. Please report this, with \
+            `plumb doctor`"
         ));
     }
     if report.presumed > 0 {
@@ -95,7 +123,7 @@ pub(crate) fn answer(strict: bool, report: &Report) -> Answer {
 mod tests {
     use std::path::Path;
 
-    use plumb::render::{SamplePattern, Settings, render};
+    use plumb::render::{SamplePattern, Settings, WorkerReport, render};
     use plumb::scene::load_from;
 
     use super::*;
@@ -108,6 +136,30 @@ mod tests {
             ..Settings::default()
         };
         render(&scene, &settings, &mut |_| Ok(())).unwrap()
+    }
+
+    fn device(name: &str, pixels: u64) -> WorkerReport {
+        WorkerReport::device(name, pixels)
+    }
+
+    #[test]
+    fn the_summary_says_who_made_how_much() {
+        let mut report = report();
+        report.workers.push(device("card [driver]", 6));
+        report.pixels = 8;
+        let line = |report: &Report| summary(&Target::Stdout, report, Duration::ZERO);
+        let text = line(&report);
+        assert!(
+            text.contains(" (25 %) and GPU card (75 %), 0.00 s"),
+            "{text}"
+        );
+        report.workers.pop();
+        report.left_out = Some("soft [driver]".into());
+        let text = line(&report);
+        assert!(
+            text.ends_with("; soft is software and slower here: --backend gpu takes it"),
+            "{text}"
+        );
     }
 
     #[test]
@@ -129,7 +181,7 @@ mod tests {
         let mut report = report();
         report.revoked = Some("adapter X was sure of a pixel".into());
         let told = told(&report).join("\n");
-        assert!(told.contains("adapter X was sure") && told.contains("the CPU rendered"));
+        assert!(told.contains("adapter X was sure") && told.contains("others made"));
     }
 
     #[test]
@@ -143,7 +195,7 @@ mod tests {
             line(&report)
         );
         report.backend = Backend::Gpu;
-        report.adapter = Some("card [driver]".into());
+        report.workers[0] = device("card [driver]", 2);
         report.refined = 2;
         report.refined_percent = 0.256;
         let text = line(&report);

@@ -4,6 +4,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
+use super::adapters::is_software;
+use super::bands::buffers::BufferPool;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
@@ -22,10 +24,14 @@ pub struct Gpu {
     pub tells_version: bool,
     /// Whether kernels can be timed on the device.
     pub timestamps: bool,
+    /// Whether it is a program on the CPU.
+    pub software: bool,
     /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
     pub lanes: u32,
     /// Whether work may be handed in.
     pub submit_gate: SubmitGate,
+    /// Buffers of dispatches that are over.
+    pub(super) buffers: Arc<BufferPool>,
     trouble: Arc<Mutex<Trouble>>,
 }
 
@@ -96,7 +102,7 @@ impl Gpu {
             })?;
         let trouble = Arc::new(Mutex::new(Trouble::default()));
         watch(&device, &trouble);
-        let software = info.device_type == wgpu::DeviceType::Cpu;
+        let software = is_software(&info);
         let lanes = if software {
             info.subgroup_max_size.max(SOFTWARE_LANES)
         } else {
@@ -109,8 +115,10 @@ impl Gpu {
             identity: identity(&info),
             tells_version: !info.driver_info.is_empty(),
             timestamps,
+            software,
             lanes,
             submit_gate: SubmitGate::default(),
+            buffers: Arc::default(),
             trouble,
         })
     }
@@ -147,7 +155,11 @@ impl Gpu {
                 layout: None,
                 module: &module,
                 entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                // No shader of ours reads what it has not written.
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    zero_initialize_workgroup_memory: false,
+                    ..Default::default()
+                },
                 cache: None,
             });
         self.check()?;
@@ -252,7 +264,7 @@ pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
 }
 
 /// All that tells an adapter from others, in a line.
-fn identity(info: &wgpu::AdapterInfo) -> String {
+pub fn identity(info: &wgpu::AdapterInfo) -> String {
     let wgpu::AdapterInfo {
         name,
         vendor,

@@ -99,6 +99,14 @@ pub enum GpuError {
         /// What wgpu says.
         reason: String,
     },
+    /// The device does not answer.
+    #[error("{adapter} has not answered for {seconds} s")]
+    Silent {
+        /// Name of the adapter.
+        adapter: String,
+        /// How long it was waited for.
+        seconds: u64,
+    },
     /// The device was lost while rendering.
     #[error("{adapter} was lost while rendering ({reason}); a driver reset, most likely")]
     Lost {

@@ -1,8 +1,15 @@
-//! One picture, band after band: chooses the tracer (GPU or CPU), runs it over the rows, hands each finished band on.
+//! One picture, band after band: whoever can make bands takes them from a [`bag`], and finished ones are handed on in
+//! order.
 //!
-//! Stands between the tracers (`gpu`, `cpu`) and what takes the rows (`image`, the preview, a test).
+//! Stands between the tracers (`gpu`, `cpu`) and what takes the rows (`image`, the preview, a test). [`devices`] opens
+//! adapters, `device_worker` and `device_thread` keep one busy, `cpu_worker` does the same with the CPU's cores, and
+//! [`rendering`] brings them together.
 
-mod choice;
+mod bag;
+mod cpu_worker;
+mod device_thread;
+mod device_worker;
+mod devices;
 mod finish;
 mod rendering;
 mod report;
@@ -10,25 +17,25 @@ mod report;
 mod tests;
 
 use std::error::Error as _;
+use std::sync::Arc;
 use std::{fs, io};
 
 use crate::certify::pixels::PixelDecider;
 use crate::files::reason;
+use crate::gpu::GpuError;
 use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
-use crate::gpu::{GpuError, adapters};
 use crate::scene::Scene;
 use crate::stopwatch::{Phase, Stopwatch};
-use choice::{Choice, choose};
-use rendering::Rendering;
-use report::Done;
+use rendering::{Rendering, Source};
 
 use crate::frame::Halt;
 pub use crate::frame::{Band, Emit, PixelFault, StopRequested};
 pub use crate::settings::{Backend, Precision, SamplePattern, Settings};
-pub use report::{Beside, Report, Seconds};
+pub use devices::Devices;
+pub use report::{Beside, Report, Seconds, WorkerReport, WorkerSeconds};
 
 /// Why a rendering failed.
 #[derive(Debug, thiserror::Error)]
@@ -141,34 +148,30 @@ fn has_vulkan_driver() -> bool {
         })
 }
 
-/// Renders `scene` and hands each finished band to `emit`, from the top of the picture down. `emit` may be called on
-/// another thread: one band is finished while the next one is rendered.
+/// Renders `scene` and hands each finished band to `emit`, from the top of the picture down.
 ///
 /// # Errors
 /// Any [`Error`]. After [`Error::Revoked`] alone what was handed on is wrong, and the CPU will do better.
 pub fn render(scene: &Scene, settings: &Settings, emit: &mut Emit<'_>) -> Result<Report, Error> {
-    let mut watch = Stopwatch::start();
-    check_rows(scene, settings)?;
-    // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
-    start_threads(settings)?;
-    watch.lap(Phase::Threads);
-    let choice = choose(settings, &mut watch, |watch| {
-        let adapter = adapters::find(settings.adapter.as_deref());
-        watch.lap(Phase::Instance);
-        let gpu = adapter.and_then(|adapter| adapters::shared_on(&adapter));
-        watch.lap(Phase::Device);
-        gpu
-    })?;
-    let live = match &choice {
-        Choice::Gpu(gpu) => Choice::Gpu(Live::on(gpu)),
-        Choice::Cpu(why) => Choice::Cpu(why.clone()),
-    };
-    let (threads, done) = run(scene, settings, &live, &|| false, emit, &mut watch)?;
-    watch.lap(Phase::Release);
-    Ok(Report::new(scene, settings, threads, done, &watch))
+    render_with(scene, settings, &Devices::new(), emit)
 }
 
-/// The same on a device that is open already, for whoever renders many pictures.
+/// The same with devices that are kept for the next picture.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_with(
+    scene: &Scene,
+    settings: &Settings,
+    devices: &Devices,
+    emit: &mut Emit<'_>,
+) -> Result<Report, Error> {
+    // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
+    start_threads(settings)?;
+    run(scene, settings, Source::Devices(devices), &|| false, emit)
+}
+
+/// The same on a device that somebody else has opened, and alone; the CPU goes on where it fails.
 ///
 /// # Errors
 /// As [`render`]; and [`Error::Stopped`].
@@ -178,15 +181,7 @@ pub fn render_live(
     live: &Live<'_>,
     emit: &mut Emit<'_>,
 ) -> Result<Report, Error> {
-    let mut watch = Stopwatch::start();
-    check_rows(scene, settings)?;
-    let choice = match choose(settings, &mut watch, |_| Ok(live.gpu))? {
-        Choice::Gpu(_) => Choice::Gpu(*live),
-        Choice::Cpu(why) => Choice::Cpu(why),
-    };
-    let (threads, done) = run(scene, settings, &choice, live.stop, emit, &mut watch)?;
-    watch.lap(Phase::Release);
-    Ok(Report::new(scene, settings, threads, done, &watch))
+    run(scene, settings, Source::Live(live), live.stop, emit)
 }
 
 /// Starts the CPU threads that all pictures share, where they are wanted and have not been started yet. (Started by
@@ -221,15 +216,15 @@ fn check_rows(scene: &Scene, settings: &Settings) -> Result<(), Error> {
     Ok(())
 }
 
-/// Renders on the tracer that was chosen, or on the CPU after all. Returns the number of CPU threads too.
 fn run(
     scene: &Scene,
     settings: &Settings,
-    choice: &Choice<Live<'_>>,
+    source: Source<'_>,
     stop: &StopRequested<'_>,
     emit: &mut Emit<'_>,
-    watch: &mut Stopwatch,
-) -> Result<(usize, Done), Error> {
+) -> Result<Report, Error> {
+    let mut watch = Stopwatch::start();
+    check_rows(scene, settings)?;
     let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build();
     let pool = settings.threads.map(threads).transpose();
     let pool = pool.map_err(|error| no_threads(&error))?;
@@ -239,17 +234,11 @@ fn run(
     };
     watch.lap(Phase::Threads);
     let [width, height] = scene.camera.pixeldim;
-    let rows = settings.rows_of(height);
-    let jitter = settings.sampling(width, rows.end);
+    let jitter = Arc::new(settings.sampling(width, settings.rows_of(height).end));
     let decider = PixelDecider::new(scene, settings, &jitter).stopping(stop);
-    let rendering = Rendering {
-        scene,
-        jitter: &jitter,
-        decider: &decider,
-        pool: pool.as_ref(),
-        width,
-        rows,
-        settings,
-    };
-    Ok((threads, rendering.run(choice, emit, watch)?))
+    let rendering = Rendering::new(scene, settings, &jitter, decider, pool.as_ref(), stop);
+    let told = rendering.run(source, emit, &mut watch)?;
+    drop(rendering);
+    watch.lap(Phase::Release);
+    Ok(Report::new(scene, settings, threads, told, &watch))
 }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::bag::Activity;
+use super::rendering::Told;
 use super::{Backend, Precision, SamplePattern, Settings};
 use crate::certify::{CpuSeconds, DecidedBy, Tally};
 use crate::scene::Scene;
@@ -26,14 +28,18 @@ pub struct Report {
     pub max_path: Option<f64>,
     /// What was asked of the bytes.
     pub precision: Precision,
-    /// Which tracer rendered: `gpu` or `cpu`.
+    /// What rendered: `gpu` if bands of an adapter are in the picture, else `cpu`.
     pub backend: Backend,
-    /// Adapter and driver, if the GPU rendered.
+    /// Adapter and driver of the first device that worked on it, if one did.
     pub adapter: Option<String>,
-    /// Why the CPU rendered although the GPU was welcome.
+    /// Which devices did not stay to the end, or never came, and why.
     pub fallback: Option<String>,
-    /// Why the CPU rendered the frame once more after the GPU: a pixel that the GPU was sure of, and got wrong.
+    /// A pixel that a device was sure of, and got wrong: others made its bands, and the picture is right.
     pub revoked: Option<String>,
+    /// The adapter that was left out because it is software, and slower than the CPU is by itself.
+    pub left_out: Option<String>,
+    /// Who made the picture, and how long that took each of them.
+    pub workers: Vec<WorkerReport>,
     /// CPU threads that were there to be used.
     pub threads: Option<usize>,
     /// Pixels rendered.
@@ -63,40 +69,84 @@ pub struct Report {
     pub seconds: Seconds,
 }
 
-/// What a rendering came to, beside its bands.
-#[derive(Debug)]
-pub(super) struct Done {
-    /// Which tracer made the picture.
-    pub(super) backend: Backend,
-    /// Adapter and driver, if the GPU rendered, rightly or not.
-    pub(super) adapter: Option<String>,
-    /// Why the CPU rendered although the GPU was welcome.
-    pub(super) fallback: Option<String>,
-    /// Why the CPU rendered once more after the GPU.
-    pub(super) revoked: Option<String>,
-    /// What decided the pixels.
-    pub(super) tally: Tally,
-    /// Sure pixels that were computed again, and were right.
-    pub(super) spot_checks: u64,
-    /// Number of bands.
-    pub(super) bands: u32,
-    /// What ran beside the thread that renders.
-    pub(super) beside: Beside,
+/// What a worker did for a picture.
+#[derive(Debug, Clone, Serialize)]
+pub struct WorkerReport {
+    /// `CPU`, or adapter and driver.
+    pub name: String,
+    /// Bands of it that are in the picture.
+    pub bands: u32,
+    /// Their pixels.
+    pub pixels: u64,
+    /// Where its time went.
+    pub seconds: WorkerSeconds,
+    /// The same, in more parts, of the thread that does the work.
+    pub phases: Phases,
+    /// Why it did not stay to the end, if so.
+    pub left: Option<String>,
+    #[serde(skip)]
+    activity: Activity,
+    /// What ran beside a device; none for the CPU.
+    #[serde(skip)]
+    beside: Option<Beside>,
 }
 
-impl Done {
-    /// On the CPU, from the start.
-    pub(super) fn on_cpu(tally: Tally, bands: u32) -> Self {
+/// Where the time of a worker went, in seconds: these follow each other.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct WorkerSeconds {
+    /// Until it could work: opening, compiling, packing.
+    pub start: f64,
+    /// Having bands to make.
+    pub work: f64,
+    /// Waiting for bands.
+    pub wait: f64,
+}
+
+impl WorkerReport {
+    pub(super) fn new(
+        name: &str,
+        beside: Option<Beside>,
+        seconds: WorkerSeconds,
+        phases: Phases,
+        left: Option<String>,
+    ) -> Self {
         Self {
-            backend: Backend::Cpu,
-            adapter: None,
-            fallback: None,
-            revoked: None,
-            tally,
-            spot_checks: 0,
-            bands,
-            beside: Beside::default(),
+            name: name.into(),
+            bands: 0,
+            pixels: 0,
+            seconds,
+            phases,
+            left,
+            activity: Activity::default(),
+            beside,
         }
+    }
+
+    /// A device called this that made so many pixels, in a band.
+    pub fn device(name: &str, pixels: u64) -> Self {
+        let nothing = (WorkerSeconds::default(), Phases::default());
+        Self {
+            bands: 1,
+            pixels,
+            ..Self::new(name, Some(Beside::default()), nothing.0, nothing.1, None)
+        }
+    }
+
+    /// Adds what it did.
+    pub(super) fn did(&mut self, activity: Activity) {
+        self.bands = activity.bands;
+        self.pixels = activity.tally.pixels();
+        self.activity = activity;
+    }
+
+    /// Whether it is a device.
+    pub fn is_device(&self) -> bool {
+        self.beside.is_some()
+    }
+
+    /// Whether it was tried, and the CPU was quicker without it.
+    pub fn is_outrun(&self) -> bool {
+        self.activity.outrun
     }
 }
 
@@ -106,18 +156,33 @@ impl Report {
         scene: &Scene,
         settings: &Settings,
         threads: usize,
-        done: Done,
+        told: Told,
         watch: &Stopwatch,
     ) -> Self {
         let [width, height] = scene.camera.pixeldim;
         let rows = settings.rows_of(height);
-        let tally = done.tally;
+        let Told {
+            workers,
+            left,
+            revoked,
+            left_out,
+        } = told;
+        let mut workers: Vec<_> = workers.into_iter().map(|(_, worker)| worker).collect();
+        // Threads end in any order.
+        workers.sort_by(|a, b| (a.is_device(), &a.name).cmp(&(b.is_device(), &b.name)));
+        let sum = |of: &dyn Fn(&WorkerReport) -> u64| workers.iter().map(of).sum::<u64>();
+        let devices = || workers.iter().filter(|worker| worker.is_device());
+        let tally = workers.iter().fold(Tally::default(), |tally, worker| {
+            tally.merge(worker.activity.tally.clone())
+        });
+        let on_devices = devices().fold(Tally::default(), |tally, worker| {
+            tally.merge(worker.activity.tally.clone())
+        });
+        let refined = on_devices.pixels() - on_devices.count(DecidedBy::Gpu);
+        let refined_samples = on_devices.samples();
         let pixels = tally.pixels();
-        let [refined, refined_samples] = match done.backend {
-            Backend::Gpu => [pixels - tally.count(DecidedBy::Gpu), tally.samples()],
-            Backend::Cpu | Backend::Auto => [0, 0],
-        };
         let percent = |part: u64, whole: u64| 100.0 * part as f64 / whole.max(1) as f64;
+        let made_some = devices().find(|worker| worker.bands > 0);
         Self {
             width,
             height,
@@ -127,10 +192,17 @@ impl Report {
             jitter: settings.supersampling().map(|several| several.spread),
             max_path: (!scene.lights.is_empty()).then_some(settings.limits.max_path),
             precision: settings.precision,
-            backend: done.backend,
-            adapter: done.adapter,
-            fallback: done.fallback,
-            revoked: done.revoked,
+            backend: if made_some.is_some() {
+                Backend::Gpu
+            } else {
+                Backend::Cpu
+            },
+            adapter: made_some
+                .or(devices().next())
+                .map(|worker| worker.name.clone()),
+            fallback: (!left.is_empty()).then(|| left.join("; ")),
+            revoked,
+            left_out,
             threads: Some(threads),
             pixels,
             refined,
@@ -140,15 +212,18 @@ impl Report {
             ties: tally.count(DecidedBy::Exact),
             presumed: tally.count(DecidedBy::Presumed),
             presumed_at: tally.presumed_at().to_vec(),
-            spot_checks: done.spot_checks,
-            bands: done.bands,
+            spot_checks: sum(&|worker| worker.activity.spot_checks),
+            bands: sum(&|worker| u64::from(worker.bands)) as u32,
             seconds: Seconds {
                 phases: watch.phases(),
-                beside: done.beside,
+                beside: devices()
+                    .filter_map(|worker| worker.beside)
+                    .fold(Beside::default(), Beside::and),
                 stages: tally.times(),
                 total: watch.total(),
             },
             decided: tally,
+            workers,
         }
     }
 }
@@ -166,7 +241,7 @@ pub struct Seconds {
     pub stages: CpuSeconds,
 }
 
-/// Seconds of what runs beside the thread that renders, while the GPU renders.
+/// Seconds of what runs beside the threads that devices have, all devices together.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Beside {
     /// The GPU's kernels: by its own clock where it has one, else as waited for.
@@ -175,6 +250,14 @@ pub struct Beside {
     pub refine: f64,
     /// Computing again some of what it was sure of, likewise.
     pub spot_checks: f64,
-    /// Handing bands on: encoding, writing; likewise.
-    pub emit: f64,
+}
+
+impl Beside {
+    fn and(self, other: Self) -> Self {
+        Self {
+            kernel: self.kernel + other.kernel,
+            refine: self.refine + other.refine,
+            spot_checks: self.spot_checks + other.spot_checks,
+        }
+    }
 }

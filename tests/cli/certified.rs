@@ -31,7 +31,7 @@ fn the_report_says_what_decided_every_pixel() {
         assert_eq!(report["ties"], report["decided"]["tie"]);
         assert_eq!(report["presumed"], report["decided"]["presumed"]);
         let seconds = &report["seconds"];
-        for time in ["kernel", "refine", "spot_checks", "emit"] {
+        for time in ["kernel", "refine", "spot_checks"] {
             assert!(seconds["beside"][time].is_f64(), "{time}");
         }
         assert!(seconds["stages"]["tie"].is_f64());
@@ -39,6 +39,15 @@ fn the_report_says_what_decided_every_pixel() {
         let sum: f64 = phases.values().map(|phase| phase.as_f64().unwrap()).sum();
         let total = seconds["total"].as_f64().unwrap();
         assert!((sum - total).abs() <= 0.02 * total, "{sum} of {total}");
+        let workers = report["workers"].as_array().unwrap();
+        let pixels: u64 = workers
+            .iter()
+            .map(|worker| worker["pixels"].as_u64().unwrap())
+            .sum();
+        assert_eq!(pixels, 1200, "{workers:?}");
+        for part in ["start", "work", "wait"] {
+            assert!(workers[0]["seconds"][part].is_f64(), "{part}");
+        }
     }
 }
 
@@ -153,7 +162,7 @@ fn the_self_test_is_remembered() {
         let mut command = desk.command(&args);
         command.env("XDG_CACHE_HOME", desk.path(cache));
         let report = json(&Ran::new(&args, command.output().unwrap()).ends(0));
-        report["seconds"]["phases"]["selftest"].as_f64().unwrap()
+        report["workers"][0]["phases"]["selftest"].as_f64().unwrap()
     };
     let notes = || -> Vec<_> {
         fs::read_dir(desk.path("cache/plumb"))

@@ -4,7 +4,9 @@
 use std::ops::Range;
 
 use plumb::certify::DecidedBy;
-use plumb::render::{Backend, Band, Precision, Report, SamplePattern, Settings, render};
+use plumb::render::{
+    Backend, Band, Precision, Report, SamplePattern, Settings, render, render_with,
+};
 use plumb::scene::Scene;
 
 use crate::common;
@@ -27,7 +29,7 @@ fn scene(name: &str) -> Scene {
 
 fn bands(scene: &Scene, settings: &Settings) -> (Vec<Band>, Report) {
     let mut bands = Vec::new();
-    let report = render(scene, settings, &mut |band| {
+    let report = render_with(scene, settings, common::devices(), &mut |band| {
         bands.push(band.clone());
         Ok(())
     });

@@ -9,9 +9,10 @@
 
 mod shade;
 
+use std::sync::Arc;
+
 use crate::prepare::Prepared;
 use crate::real::Bounded;
-use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::shader::bounds::{self, U};
 use crate::shader::kind::SurfaceKind;
@@ -26,8 +27,10 @@ type Lane = [f32; LANES];
 /// A scene for eight pixels at once.
 #[derive(Debug)]
 pub struct Lanes {
-    packed: Packed,
+    packed: Arc<Packed>,
     constants: Constants,
+    /// Whether they do all surfaces of the scene.
+    whole: bool,
     /// Whether some object is modulated: then hits must be known well enough for bounds of the first order.
     modulated: bool,
 }
@@ -133,16 +136,20 @@ pub struct Eight {
 }
 
 impl Lanes {
-    /// The scene as the GPU would get it; None where it takes more than there is here.
-    pub fn new(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Option<Self> {
+    /// The scene as the GPU would get it, asked for only where it may do; None where it takes more than there is here.
+    pub fn new(
+        prepared: &Prepared<Bounded>,
+        settings: &Settings,
+        packed: impl FnOnce() -> Arc<Packed>,
+    ) -> Option<Self> {
         if prepared.world.is_some() || settings.supersampling().is_some() || settings.values {
             return None;
         }
-        Self::of(Packed::prepared(prepared, scene, settings))
+        Self::of(packed())
     }
 
     /// A packed scene without lights, for a ray a pixel.
-    pub fn of(packed: Packed) -> Option<Self> {
+    pub fn of(packed: Arc<Packed>) -> Option<Self> {
         let here = |kind: &SurfaceKind| matches!(kind, SurfaceKind::Plain | SurfaceKind::Tiled);
         if packed.unprovable.is_some()
             || !packed.quadrics.is_empty()
@@ -165,9 +172,15 @@ impl Lanes {
         };
         Some(Self {
             constants,
+            whole: packed.kinds.iter().all(here),
             modulated: packed.kinds.iter().any(|kind| *kind != SurfaceKind::Plain),
             packed,
         })
+    }
+
+    /// Whether all surfaces of the scene are made here, so that few pixels are left to be traced one by one.
+    pub fn are_whole(&self) -> bool {
+        self.whole
     }
 
     /// The eight pixels of row `y` from column `x` on, which is a multiple of eight.

@@ -2,6 +2,7 @@
 //! handed on. No dispatch should take longer than about half a second: a real GPU's watchdog resets longer ones.
 
 pub(crate) mod assembly;
+pub(super) mod buffers;
 pub(crate) mod partial;
 mod plan;
 mod slot;
@@ -15,9 +16,11 @@ use super::pipeline::Pipeline;
 use crate::frame::StopRequested;
 use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
+use crate::shader::form::Form;
 use crate::stopwatch::{Phase, Stopwatch};
 use assembly::Assembly;
-use plan::Plan;
+use partial::Layout;
+use plan::{Next, Plan};
 use slot::Slot;
 
 pub use assembly::Rendered;
@@ -51,45 +54,76 @@ pub struct Frame<'a> {
     pub canvas: Option<&'a Canvas>,
 }
 
-/// Renders the frame from the top row down, and hands each band on: while that is waited for, the next two dispatches
-/// are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so. Returns the seconds that the
-/// kernels took.
+/// What rows are to be rendered next.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Order {
+    /// These.
+    Rows(Range<u32>),
+    /// There are none at the moment.
+    Later,
+    /// There will be none any more.
+    End,
+}
+
+/// Is asked for the next rows: how many there should be, and whether there is nothing else to do than to wait for them.
+pub type NextRows<'a> = dyn FnMut(u32, bool) -> Order + 'a;
+
+/// Gives all rows, from the top down, as many as wished.
+pub fn from_the_top(mut rows: Range<u32>) -> impl FnMut(u32, bool) -> Order {
+    move |wish, _| {
+        let start = rows.end.saturating_sub(wish).max(rows.start);
+        let band = start..rows.end;
+        rows.end = start;
+        if band.is_empty() {
+            Order::End
+        } else {
+            Order::Rows(band)
+        }
+    }
+}
+
+/// Renders the rows that it is told, of those of the frame, and hands each band on: while that is waited for, the next
+/// two dispatches are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so. Returns the seconds
+/// that the kernels took.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
     frame: &Frame<'_>,
+    next_rows: &mut NextRows<'_>,
     stop: &StopRequested<'_>,
     watch: &mut Stopwatch,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
 ) -> Result<f64, GpuError> {
-    let (width, rows) = (frame.width, frame.rows.clone());
-    let largest = largest_dispatch(gpu, pipeline, width, &rows);
-    // Rows are filled up to whole invocations.
-    let filled =
-        largest + u64::from(pipeline.across - 1) * largest.min(u64::from(rows.end - rows.start));
+    let width = frame.width;
+    let (largest, filled) = largest_dispatch(gpu, &pipeline.form, width, &frame.rows);
     // The second one is made when the GPU is busy with the first, and only if there is more to do.
     let mut slots: [Option<Slot>; 2] = [None, None];
     let mut plan = Plan::new(
         width,
-        rows,
         largest,
         frame.tests,
         frame.band_rows,
         frame.dispatch_seconds,
     );
-    let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
+    let mut assembly = Assembly::new(width, pipeline.form.pixels);
     let mut kernels = 0.0;
-    let mut next = 0;
+    let mut turn = 0;
     let mut open = 0;
     loop {
         if stop() {
             return Ok(kernels);
         }
-        let rectangle = plan.next();
+        let next = plan.next(&mut |wish| next_rows(wish, open == 0));
+        watch.lap(Phase::Held);
+        let (rectangle, end) = match next {
+            Next::Rectangle(rectangle) => (Some(rectangle), false),
+            Next::Later => (None, false),
+            Next::End => (None, true),
+        };
         let mut finished = None;
         if open == 2 || (rectangle.is_none() && open > 0) {
             // The older of the two slots is read back, while the GPU goes on with the other one's work.
-            let oldest = if open == 2 { next } else { 1 - next };
+            let oldest = if open == 2 { turn } else { 1 - turn };
             if let Some(slot) = &mut slots[oldest] {
                 let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
                 plan.took(pixels, seconds);
@@ -99,9 +133,9 @@ pub fn run(
             finished = assembly.finished();
             watch.lap(Phase::Readback);
         }
-        let done = rectangle.is_none() && open == 0;
+        let done = end && open == 0;
         if let Some(rectangle) = rectangle {
-            let slot = match &mut slots[next] {
+            let slot = match &mut slots[turn] {
                 Some(slot) => slot,
                 none => {
                     let slot = none.insert(Slot::new(gpu, pipeline, filled));
@@ -112,7 +146,7 @@ pub fn run(
             };
             slot.submit(gpu, pipeline, frame, rectangle);
             watch.lap(Phase::Submit);
-            next = 1 - next;
+            turn = 1 - turn;
             open += 1;
         }
         // The band is handed on only now, while the GPU is busy: whoever takes it may keep us waiting.
@@ -129,27 +163,44 @@ pub fn run(
     }
 }
 
-/// Most pixels that one dispatch may have here.
-fn largest_dispatch(gpu: &Gpu, pipeline: &Pipeline, width: u32, rows: &Range<u32>) -> u64 {
+/// Makes the large buffers for such a frame, unless they are there: meanwhile the shader may be compiled.
+pub fn prepare(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) {
+    let (largest, filled) = largest_dispatch(gpu, form, width, rows);
+    let pixels = u64::from(width) * u64::from(rows.end - rows.start);
+    let pairs = if largest < pixels { 2 } else { 1 };
+    gpu.buffers
+        .prepare(gpu, pairs, Layout::new(form, filled).bytes);
+}
+
+/// Most pixels that one dispatch may have here; and the same with those that its rows are filled up with.
+fn largest_dispatch(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) -> (u64, u64) {
     let limits = gpu.device.limits();
     let bytes = limits
         .max_storage_buffer_binding_size
         .min(limits.max_buffer_size)
-        - if pipeline.partial_words > 0 {
+        - if form.partial_words > 0 {
             partial::MOST
         } else {
             0
         };
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
-    let offsets = u64::from(pipeline.offsets) * OFFSET_BYTES;
+    let offsets = u64::from(form.offsets) * OFFSET_BYTES;
+    // With what rows are filled up with.
+    let filled = u64::from(width.next_multiple_of(form.group()));
+    let most = MAX_PIXELS.min(bytes / form.group_bytes() * u64::from(form.group()));
+    let most = (most * u64::from(width) / filled).max(1);
     // A dispatch has at least one row of workgroups, whatever the offsets take; wgpu reports an error if that is too
     // much.
     let by_offsets = MAX_OFFSETS
         .checked_div(offsets)
         .unwrap_or(u64::MAX)
         .max(u64::from(WORKGROUP * WORKGROUP));
-    MAX_PIXELS
-        .min(bytes / pipeline.pixel_bytes)
-        .min(by_offsets)
-        .min(pixels)
+    let largest = most.min(by_offsets).min(pixels);
+    // A dispatch of several rows has as many as fit whole, and each is filled up to whole groups.
+    let most_rows = (largest / u64::from(width)).max(1);
+    let group = u64::from(form.group());
+    (
+        largest,
+        (largest + (group - 1) * most_rows).next_multiple_of(group),
+    )
 }

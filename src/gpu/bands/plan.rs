@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Order;
 use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
 
@@ -41,11 +42,21 @@ impl Rectangle {
     }
 }
 
+/// What comes next.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    /// This.
+    Rectangle(Rectangle),
+    /// Nothing yet.
+    Later,
+    /// Nothing any more.
+    End,
+}
+
 /// Which rectangle comes next, and how large it is to be.
 #[derive(Debug)]
 pub(super) struct Plan {
     width: u32,
-    rows: Range<u32>,
     largest: u64,
     pixels: u64,
     /// Rows of a band, if that was asked for.
@@ -59,7 +70,6 @@ pub(super) struct Plan {
 impl Plan {
     pub(super) fn new(
         width: u32,
-        rows: Range<u32>,
         largest: u64,
         tests: usize,
         band_rows: Option<u32>,
@@ -69,7 +79,6 @@ impl Plan {
         let pixels = (first / (tests as u64 + PIXEL_TESTS)).clamp(1, largest);
         Self {
             width,
-            rows,
             largest,
             pixels,
             band_rows,
@@ -87,28 +96,24 @@ impl Plan {
         self.pixels = (ideal.clamp(least, most) as u64).clamp(1, self.largest);
     }
 
-    pub(super) fn next(&mut self) -> Option<Rectangle> {
+    /// Rows that a band should have: whole workgroups of them if they fit.
+    fn wish(&self) -> u32 {
+        let fitting = (self.largest / u64::from(self.width)).clamp(1, u64::from(u32::MAX)) as u32;
+        let timely = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
+        let wish = self.band_rows.unwrap_or(timely.max(WORKGROUP));
+        wish.clamp(1, fitting)
+    }
+
+    /// The next rectangle; `rows` is asked for another band, of about so many rows, where one is complete. Its columns
+    /// are cut where even a row of workgroups takes too long.
+    pub(super) fn next(&mut self, rows: &mut dyn FnMut(u32) -> Order) -> Next {
         let (band, column) = match self.band.take() {
             Some(under_way) => under_way,
-            None => {
-                if self.rows.is_empty() {
-                    return None;
-                }
-                // A rectangle has whole workgroups of rows if they fit; its columns are cut where even one row of
-                // workgroups takes too long.
-                let fitting = (self.largest / u64::from(self.width))
-                    .max(1)
-                    .min(u64::from(u32::MAX)) as u32;
-                let timely = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
-                let height = self
-                    .band_rows
-                    .unwrap_or(timely.max(WORKGROUP))
-                    .clamp(1, fitting)
-                    .min(self.rows.end - self.rows.start);
-                let band = self.rows.end - height..self.rows.end;
-                self.rows.end = band.start;
-                (band, 0)
-            }
+            None => match rows(self.wish()) {
+                Order::Rows(band) => (band, 0),
+                Order::Later => return Next::Later,
+                Order::End => return Next::End,
+            },
         };
         let height = u64::from(band.end - band.start);
         let cut = (self.pixels / height) as u32 / WORKGROUP * WORKGROUP;
@@ -117,7 +122,7 @@ impl Plan {
         if !last {
             self.band = Some((band.clone(), end));
         }
-        Some(Rectangle {
+        Next::Rectangle(Rectangle {
             band,
             columns: column..end,
             last,
@@ -127,7 +132,7 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
-    use super::super::MAX_PIXELS;
+    use super::super::{MAX_PIXELS, from_the_top};
     use super::*;
 
     /// Every pixel exactly once, bands from the top down, and no dispatch larger than allowed.
@@ -151,10 +156,11 @@ mod tests {
         seconds: &dyn Fn(u64) -> f64,
         band_rows: Option<u32>,
     ) {
-        let mut plan = Plan::new(width, rows.clone(), largest, tested, band_rows, 0.15);
+        let mut plan = Plan::new(width, largest, tested, band_rows, 0.15);
+        let mut source = from_the_top(rows.clone());
         let mut top = rows.end;
         let mut column = 0;
-        while let Some(r) = plan.next() {
+        while let Next::Rectangle(r) = plan.next(&mut |wish| source(wish, true)) {
             assert_eq!(r.columns.start, column);
             assert_eq!(r.band.end, top);
             assert!(r.pixels() <= largest && r.pixels() > 0, "{r:?}");
@@ -191,12 +197,19 @@ mod tests {
 
     #[test]
     fn a_slow_scene_gets_small_dispatches() {
-        let mut plan = Plan::new(1000, 0..1000, MAX_PIXELS, 3, None, 0.15);
+        let mut plan = Plan::new(1000, MAX_PIXELS, 3, None, 0.15);
+        let mut source = from_the_top(0..1_000_000);
+        let mut pixels = || match plan.next(&mut |wish| source(wish, true)) {
+            Next::Rectangle(r) => {
+                plan.took(r.pixels(), r.pixels() as f64 * 1e-4);
+                r.pixels()
+            }
+            other => panic!("{other:?}"),
+        };
         for _ in 0..10 {
-            let Some(r) = plan.next() else { break };
-            plan.took(r.pixels(), r.pixels() as f64 * 1e-4);
+            pixels();
         }
-        let pixels = plan.next().map(|r| r.pixels()).unwrap();
+        let pixels = pixels();
         assert!(pixels as f64 * 1e-4 <= 0.5, "{pixels}");
     }
 }

@@ -14,6 +14,12 @@ pub(crate) fn spoil_next(word: Option<usize>) {
     SPOILED.set(word);
 }
 
+/// Makes another thread get wrong what this one does.
+pub(crate) fn carry() -> Box<dyn FnOnce() + Send> {
+    let spoiled = SPOILED.get();
+    Box::new(move || SPOILED.set(spoiled))
+}
+
 /// What [`run`] does to the results under test.
 pub(super) fn spoil(results: &mut [u32]) {
     if let Some(word) = SPOILED.get() {

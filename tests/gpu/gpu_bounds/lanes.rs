@@ -1,5 +1,7 @@
 //! The GPU's arithmetic on the CPU: what it is sure of is right, and it is sure of nearly all.
 
+use std::sync::Arc;
+
 use plumb::certify::lanes::{LANES, Lanes};
 use plumb::cpu::pixel::ExactTracer;
 use plumb::jitter::Sampling;
@@ -28,7 +30,7 @@ fn count(change: fn(&mut Packed)) -> (Count, usize) {
             ExactTracer::new(&scene, ViewParameters::from(settings.screen_tolerance));
         let mut packed = Packed::prepared(exact_tracer.bounded(), &scene, &settings);
         change(&mut packed);
-        let Some(lanes) = Lanes::of(packed) else {
+        let Some(lanes) = Lanes::of(Arc::new(packed)) else {
             continue;
         };
         scenes += 1;

@@ -1,0 +1,330 @@
+//! A device as a worker: takes rows for it, and finishes what it rendered while it renders the next ones.
+//!
+//! Its thread ([`device_thread`]) is not waited for: if the device is lost, out of memory, wrong or silent, the worker
+//! leaves, and others make what it had taken.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::bag::Taken;
+use super::device_thread::{self, DeviceTask, Line, News, Spent, Use};
+use super::devices::{Device, Devices};
+use super::finish::{Finish, Unfinished};
+use super::rendering::Rendering;
+use super::report::{Beside, WorkerReport, WorkerSeconds};
+use super::{Backend, Error, Live};
+use crate::certify::trust;
+use crate::frame::Halt;
+use crate::gpu::GpuError;
+use crate::gpu::bands::DISPATCH_SECONDS;
+use crate::gpu::device::Gpu;
+use crate::shader::constants::LOOP_ITERATIONS;
+use crate::stopwatch::Phases;
+
+/// Most rows that a band from elsewhere may have for a device: its dispatches have whole workgroups of columns.
+const MOST: u32 = 1 << 16;
+
+/// Bands that a device is given at once: two that it works on, and one that is being finished.
+const AT_ONCE: usize = 3;
+
+/// How long a device's thread has to say what it did.
+const LAST_WORDS: Duration = Duration::from_secs(1);
+
+/// A device.
+pub(super) enum Here<'a> {
+    /// One that was opened for pictures.
+    Opened {
+        device: Arc<Device>,
+        /// What opening it took.
+        phases: Phases,
+        /// Whose it is.
+        devices: &'a Devices,
+    },
+    /// One that somebody else opened.
+    Live(&'a Live<'a>),
+}
+
+impl Here<'_> {
+    fn gpu(&self) -> &Gpu {
+        match self {
+            Self::Opened { device, .. } => &device.gpu,
+            Self::Live(live) => live.gpu,
+        }
+    }
+}
+
+/// Why a device's worker ends before all is done.
+enum Gone {
+    /// There is nothing left for it to do.
+    Done,
+    /// The device's fault, or the scene's.
+    Fault(GpuError),
+    /// The scene cannot be certified on it.
+    Unprovable(String),
+    /// It was sure of a pixel, and wrong: this one.
+    Wrong(String),
+}
+
+/// A device at work on a picture.
+pub(super) struct DeviceWorker<'a, 'r> {
+    rendering: &'a Rendering<'r>,
+    me: usize,
+    started: Instant,
+    ready: Option<Instant>,
+    beside: Beside,
+    spent: Spent,
+    /// How long the device may keep silent.
+    patience: Duration,
+}
+
+impl<'a, 'r> DeviceWorker<'a, 'r> {
+    pub(super) fn new(rendering: &'a Rendering<'r>, me: usize) -> Self {
+        Self {
+            rendering,
+            me,
+            started: Instant::now(),
+            ready: None,
+            beside: Beside::default(),
+            spent: Spent::default(),
+            patience: patience(),
+        }
+    }
+
+    /// Works until there is nothing left to do, or it has to leave.
+    pub(super) fn run(mut self, here: &Here<'_>, sender: Sender<News>, news: &Receiver<News>) {
+        let gone = self.work(here, sender, news);
+        let (bag, backend) = (&self.rendering.bag, self.rendering.settings.backend);
+        let left = match gone {
+            Gone::Done => return self.report(here, None),
+            Gone::Wrong(why) => {
+                trust::revoke(here.gpu(), self.rendering.settings.cache.as_deref());
+                bag.revoke(self.me, &why);
+                self.rendering.tell(|told| told.revoked = Some(why.clone()));
+                return self.report(here, Some(why));
+            }
+            Gone::Unprovable(why) => {
+                bag.leave(self.me);
+                format!("{why}, so the CPU renders")
+            }
+            // Who asks for the GPU wants to know that the scene is too much for it.
+            Gone::Fault(
+                error @ (GpuError::TooMany { .. }
+                | GpuError::TooLarge { .. }
+                | GpuError::TooManyBuffers { .. }),
+            ) => {
+                if backend == Backend::Gpu || !bag.leave(self.me) {
+                    return bag.fail(error.into());
+                }
+                format!("{error}, so the CPU renders")
+            }
+            Gone::Fault(error) => {
+                let why = error.to_string();
+                if !bag.leave(self.me) {
+                    return bag.fail(error.into());
+                }
+                format!("{why}: others made what it had left")
+            }
+        };
+        self.rendering.tell(|told| told.left.push(left.clone()));
+        self.report(here, Some(left));
+    }
+
+    fn work(&mut self, here: &Here<'_>, sender: Sender<News>, news: &Receiver<News>) -> Gone {
+        let rendering = self.rendering;
+        let packed = rendering.packed();
+        let (found, allowed) = (packed.loop_iterations(), LOOP_ITERATIONS);
+        if found > allowed {
+            return Gone::Fault(GpuError::TooMany { found, allowed });
+        }
+        if let (true, Some(reason)) = (rendering.settings.has_gpu_bounds(), packed.unprovable) {
+            return Gone::Unprovable(format!("{reason} for f32 with error bounds"));
+        }
+        let task = DeviceTask {
+            packed,
+            settings: rendering.settings.clone(),
+            jitter: Arc::clone(rendering.jitter),
+            width: rendering.width,
+            rows: rendering.rows.clone(),
+        };
+        let (orders, receiver) = channel();
+        let wish = Arc::new(AtomicU32::new(1));
+        let line = Line {
+            orders: receiver,
+            wish: Arc::clone(&wish),
+            news: sender,
+        };
+        match here {
+            Here::Opened {
+                device, devices, ..
+            } => {
+                let device = Arc::clone(device);
+                let thread = move || {
+                    let used = Use {
+                        gpu: &device.gpu,
+                        compiled: Some(&device.compiled),
+                        moving: false,
+                        canvas: None,
+                        dispatch_seconds: DISPATCH_SECONDS,
+                        stop: &|| false,
+                    };
+                    device_thread::run(&task, used, &line);
+                };
+                if let Err(error) = devices.spawn("kernels", thread) {
+                    rendering.bag.fail(Error::Threads(error.to_string()));
+                    return Gone::Done;
+                }
+                let gone = self.serve(here, orders, &wish, news);
+                if matches!(gone, Gone::Fault(GpuError::Silent { .. })) {
+                    devices.abandon();
+                }
+                gone
+            }
+            Here::Live(live) => thread::scope(|scope| {
+                let used = Use {
+                    gpu: live.gpu,
+                    compiled: live.compiled,
+                    moving: live.compiled.is_some(),
+                    canvas: live.canvas,
+                    dispatch_seconds: live.dispatch_seconds,
+                    stop: live.stop,
+                };
+                let thread = move || device_thread::run(&task, used, &line);
+                #[cfg(test)]
+                let thread = super::tests::with_faults(thread);
+                let started = thread::Builder::new()
+                    .name("kernels".into())
+                    .spawn_scoped(scope, thread);
+                if let Err(error) = started {
+                    rendering.bag.fail(Error::Threads(error.to_string()));
+                    return Gone::Done;
+                }
+                self.serve(here, orders, &wish, news)
+            }),
+        }
+    }
+
+    /// Orders rows, and finishes what comes. The device's thread ends when nobody can order any more.
+    fn serve(
+        &mut self,
+        here: &Here<'_>,
+        orders: Sender<Range<u32>>,
+        wish: &AtomicU32,
+        news: &Receiver<News>,
+    ) -> Gone {
+        let bag = &self.rendering.bag;
+        let stop = self.rendering.stop;
+        let mut finish = Finish::new(&self.rendering.decider, self.rendering.settings);
+        let mut out = 0;
+        loop {
+            while self.ready.is_some() && out < AT_ONCE {
+                match bag.take(self.me, wish.load(Ordering::Relaxed), MOST, out == 0) {
+                    // A thread that has ended says why.
+                    Taken::Rows(rows) => out += usize::from(orders.send(rows).is_ok()),
+                    Taken::Later => break,
+                    Taken::End if out == 0 => {
+                        drop(orders);
+                        self.hear_out(news);
+                        return Gone::Done;
+                    }
+                    Taken::End if bag.is_over() => return Gone::Done,
+                    Taken::End => break,
+                }
+            }
+            match news.recv_timeout(self.patience) {
+                Ok(News::Ready) => {
+                    self.ready = Some(Instant::now());
+                    bag.ready(self.me);
+                }
+                Ok(News::Rendered(rendered)) => {
+                    out -= 1;
+                    let rows = rendered.band.rows.clone();
+                    if !bag.wants(&rows) {
+                        continue;
+                    }
+                    let finished = {
+                        let _refining = bag.refining();
+                        self.rendering
+                            .on_threads(|| finish.band(self.me, *rendered, &mut self.beside))
+                    };
+                    match finished {
+                        Ok(finished) => bag.deliver(finished),
+                        Err(Unfinished::Halt(Halt::Stopped)) => bag.fail(Error::Stopped),
+                        Err(Unfinished::Halt(halt)) => bag.halt(&rows, halt),
+                        Err(Unfinished::Wrong(wrong)) => {
+                            return Gone::Wrong(wrong.of(&here.gpu().name));
+                        }
+                    }
+                }
+                Ok(News::Ended(Err(error))) => return Gone::Fault(error),
+                Ok(News::Ended(Ok(spent))) => {
+                    self.spent = spent;
+                    if stop() {
+                        bag.fail(Error::Stopped);
+                    }
+                    return Gone::Done;
+                }
+                Ok(News::Over) => return Gone::Done,
+                Ok(News::Found(_)) => {}
+                Err(RecvTimeoutError::Timeout) => {
+                    return Gone::Fault(GpuError::Silent {
+                        adapter: here.gpu().name.clone(),
+                        seconds: self.patience.as_secs(),
+                    });
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Gone::Fault(here.gpu().lost(&"its thread ended"));
+                }
+            }
+        }
+    }
+
+    /// Hears what a device's thread did that has nothing left to do.
+    fn hear_out(&mut self, news: &Receiver<News>) {
+        while let Ok(heard) = news.recv_timeout(LAST_WORDS) {
+            if let News::Ended(ended) = heard {
+                self.spent = ended.unwrap_or_default();
+                return;
+            }
+        }
+    }
+
+    fn report(&self, here: &Here<'_>, left: Option<String>) {
+        let wait = self.rendering.bag.activity(self.me).waited.as_secs_f64();
+        let life = self.started.elapsed().as_secs_f64();
+        let start = self
+            .ready
+            .map_or(life, |ready| (ready - self.started).as_secs_f64());
+        let mut phases = self.spent.phases;
+        let mut opening = 0.0;
+        if let Here::Opened { phases: before, .. } = here {
+            opening = before.sum();
+            phases = phases.and(before);
+        }
+        let seconds = WorkerSeconds {
+            start: opening + start,
+            work: (life - start - wait).max(0.0),
+            wait,
+        };
+        let beside = Beside {
+            kernel: self.spent.kernel,
+            ..self.beside
+        };
+        let report = WorkerReport::new(&here.gpu().name, Some(beside), seconds, phases, left);
+        self.rendering
+            .tell(|told| told.workers.push((self.me, report)));
+    }
+}
+
+/// How long a device may keep silent that has something to do: its dispatches are made such that they take less than a
+/// second, but a large shader may take long to compile.
+fn patience() -> Duration {
+    #[cfg(test)]
+    if let Some(patience) = super::tests::patience() {
+        return patience;
+    }
+    Duration::from_secs(60)
+}

@@ -1,0 +1,187 @@
+//! The devices of a process: opened in a thread of their own where they are first asked for, tried out, and kept with
+//! the shaders that they compiled, for as many pictures as there are.
+//!
+//! Loading a driver takes longer than many a picture, so nobody waits for it who has something else to do.
+
+use std::path::PathBuf;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+
+use super::device_thread::News;
+use crate::certify::trust;
+use crate::gpu::GpuError;
+use crate::gpu::adapters::{self, Candidates};
+use crate::gpu::device::{Gpu, identity};
+use crate::gpu::pipeline::Compiled;
+use crate::settings::{Precision, Settings};
+use crate::stopwatch::{Phase, Phases, Stopwatch};
+
+/// A device that is open, and the shaders that it compiled lately.
+#[derive(Debug)]
+pub(super) struct Device {
+    pub(super) gpu: Gpu,
+    pub(super) compiled: Compiled,
+}
+
+/// The devices that are open, or will be. When it is dropped, it waits for the threads that use them: a process that is
+/// to end without waiting has to [forget](std::mem::forget) it, and to end in a way that runs nobody's destructors.
+#[derive(Debug, Default)]
+pub struct Devices {
+    open: Arc<Mutex<Vec<Arc<Device>>>>,
+    /// Whether only these are used, and no adapters looked for.
+    given: bool,
+    threads: Mutex<Vec<JoinHandle<()>>>,
+}
+
+/// What devices a picture asks for.
+#[derive(Debug, Clone)]
+pub(super) struct Wanted {
+    adapter: Option<String>,
+    /// Whether software will do.
+    pub(super) software: bool,
+    certified: bool,
+    cache: Option<PathBuf>,
+}
+
+impl Wanted {
+    pub(super) fn new(settings: &Settings, software: bool) -> Self {
+        Self {
+            adapter: settings.adapter.clone(),
+            software,
+            certified: settings.precision == Precision::Certified,
+            cache: settings.cache.clone(),
+        }
+    }
+}
+
+/// What came of asking for devices.
+#[derive(Debug)]
+pub(super) enum Found {
+    /// Each adapter, opened and trusted, or why not; and what that took.
+    Devices(Vec<Result<Arc<Device>, GpuError>>, Phases),
+    /// There is software only, called this, and it was not asked for.
+    Software(String),
+    /// No adapter, or not the one that was named.
+    None(GpuError),
+}
+
+impl Devices {
+    /// None yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// These, which are open, and no others.
+    pub fn of(gpus: Vec<Gpu>) -> Self {
+        let device = |gpu| {
+            Arc::new(Device {
+                gpu,
+                compiled: Compiled::default(),
+            })
+        };
+        Self {
+            open: Arc::new(Mutex::new(gpus.into_iter().map(device).collect())),
+            given: true,
+            threads: Mutex::default(),
+        }
+    }
+
+    /// Whether only those are used that were given, so that no driver has to be loaded.
+    pub(super) fn are_given(&self) -> bool {
+        self.given
+    }
+
+    /// Asks for devices, and returns at once; `tell` hears what came of it.
+    pub(super) fn ask(&self, wanted: Wanted, tell: Sender<News>) {
+        let (open, given) = (Arc::clone(&self.open), self.given);
+        let answer = move || {
+            // Nobody may listen any more.
+            let _ = tell.send(News::Found(find(&open, given, &wanted)));
+        };
+        // If there can be no thread, there can be no device either.
+        let _ = self.spawn("devices", answer);
+    }
+
+    /// Starts a thread that is waited for only when this is dropped.
+    pub(super) fn spawn(
+        &self,
+        name: &str,
+        work: impl FnOnce() + Send + 'static,
+    ) -> std::io::Result<()> {
+        #[cfg(test)]
+        let work = super::tests::with_faults(work);
+        let thread = thread::Builder::new().name(name.into()).spawn(work)?;
+        let mut threads = self.threads.lock().unwrap_or_else(PoisonError::into_inner);
+        threads.retain(|thread| !thread.is_finished());
+        threads.push(thread);
+        Ok(())
+    }
+
+    /// The process goes on without these threads: one of them does not answer.
+    pub(super) fn abandon(&self) {
+        self.threads
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clear();
+    }
+}
+
+impl Drop for Devices {
+    fn drop(&mut self) {
+        let threads = self
+            .threads
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
+        for thread in threads.drain(..) {
+            // What a thread had to say it said.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Finds adapters, opens those that are not open yet, and tries them out.
+fn find(open: &Mutex<Vec<Arc<Device>>>, given: bool, wanted: &Wanted) -> Found {
+    let mut watch = Stopwatch::start();
+    // Whoever else asks waits: devices are opened once.
+    let mut open = open.lock().unwrap_or_else(PoisonError::into_inner);
+    let opened: Vec<Result<Arc<Device>, GpuError>> = if given {
+        open.iter().map(|device| Ok(Arc::clone(device))).collect()
+    } else {
+        let adapters = match adapters::candidates(wanted.adapter.as_deref(), wanted.software) {
+            Ok(Candidates::Adapters(adapters)) => adapters,
+            Ok(Candidates::Software(name)) => return Found::Software(name),
+            Err(error) => return Found::None(error),
+        };
+        watch.lap(Phase::Instance);
+        let mut free: Vec<_> = open.clone();
+        let opened = adapters.iter().map(|adapter| {
+            let identity = identity(&adapter.get_info());
+            // Two cards of a kind have one identity.
+            if let Some(place) = free
+                .iter()
+                .position(|device| device.gpu.identity == identity)
+            {
+                return Ok(free.remove(place));
+            }
+            let device = Arc::new(Device {
+                gpu: Gpu::open(adapter)?,
+                compiled: Compiled::default(),
+            });
+            open.push(Arc::clone(&device));
+            Ok(device)
+        });
+        opened.collect()
+    };
+    drop(open);
+    watch.lap(Phase::Device);
+    let tested = opened.into_iter().map(|device| match device {
+        Ok(device) if wanted.certified => {
+            trust::check(&device.gpu, wanted.cache.as_deref()).map(|()| device)
+        }
+        device => device,
+    });
+    let tested = tested.collect();
+    watch.lap(Phase::Selftest);
+    Found::Devices(tested, watch.phases())
+}
