@@ -198,9 +198,9 @@ fn main(
         if local.x < PACKED_WORDS {
             // Word 0 of three has a pixel and a byte of the next one, word 1 two bytes of each, word 2 the last byte of
             // one, and a pixel.
-            let from = here + local.x / 3u;
+            let first = here + local.x / 3u;
             let shift = 8u * (local.x % 3u);
-            let bytes = ((handed[from] & 0xffffffu) >> shift) | (handed[from + 1u] << (24u - shift));
+            let bytes = ((handed[first] & 0xffffffu) >> shift) | (handed[first + 1u] << (24u - shift));
             put(PACKED_WORDS * (groups_of_row() * id.y + group) + local.x, bytes);
         }
         if local.x == PACKED_WORDS {

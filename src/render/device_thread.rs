@@ -160,7 +160,7 @@ fn pipeline(
         features = features.while_moving();
     }
     if device.canvas.is_none() {
-        features = features.for_a_file();
+        features = features.for_a_file(gpu.software);
     }
     let wgsl = compose(packed, &features, Entry::Picture);
     watch.lap(Phase::Pack);

@@ -145,7 +145,7 @@ fn every_scene_of_ours_is_valid() {
                 &compose(&packed, &features, Entry::Picture),
                 &path.display().to_string(),
             );
-            let packed_pixels = features.clone().for_a_file();
+            let packed_pixels = features.clone().for_a_file(false);
             assert_valid(
                 &compose(&packed, &packed_pixels, Entry::Picture),
                 &format!("{} for a file", path.display()),
