@@ -20,6 +20,7 @@
 
 pub mod bench;
 pub mod certify;
+pub mod cores;
 pub mod cpu;
 pub mod diagnostic;
 pub mod edit;

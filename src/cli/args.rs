@@ -152,8 +152,9 @@ written beside and renamed when it is whole; devices, pipes and links are writte
         long_help = "\
 Who makes the picture. It changes no byte.
 
-auto: the CPU begins at once, every GPU joins as soon as its driver is loaded, and they share the picture. A driver that \
-is software, such as lavapipe or SwiftShader, uses the CPU's cores: it takes part only where it is the quicker of the two.
+auto: the CPU begins at once, every GPU joins as soon as its driver is loaded, and they share the picture. A driver \
+that is software, such as lavapipe or SwiftShader, uses the CPU's cores: it takes part only where it is the quicker of \
+the two.
 
 gpu: GPUs alone, software too, or an error where there is none; what they are not sure of the CPU decides, and it goes \
 on where they fail.
@@ -210,7 +211,8 @@ A second picture of the same size, .png or .ppm, that shows what decided each pi
         value_parser = threads,
         long_help = "\
 Threads that plumb computes with on the CPU; without it as many as there are cores. A software driver, such as \
-lavapipe or SwiftShader, computes on the CPU with threads of its own, which this does not bound: --backend cpu does without it."
+lavapipe or SwiftShader, computes on the CPU with threads of its own, which this does not bound: --backend cpu does \
+without it."
     )]
     pub(crate) threads: Option<usize>,
     /// Rows of a band, the piece in which a picture is rendered and written; it changes no byte

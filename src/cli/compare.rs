@@ -91,8 +91,13 @@ fn write(picture: Picture, target: &Target, format: Format) -> Result<()> {
     let metadata = Metadata {
         entries: vec![("Software".to_owned(), SOFTWARE.to_owned())],
     };
-    let mut out =
-        picture::PictureFile::open(target, format, picture.width, picture.height, metadata)?;
+    let mut out = picture::PictureFile::open(
+        target,
+        format,
+        [picture.width, picture.height],
+        metadata,
+        false,
+    )?;
     match out.write(&picture.into_band()) {
         Ok(()) => out.finish().map(drop).map_err(Into::into),
         Err(source) => Err(out.failed(source)),

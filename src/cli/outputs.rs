@@ -63,7 +63,7 @@ mod tests {
     fn open(folder: &std::path::Path) -> Outputs {
         let picture = |name: &str| {
             let target = Target::Path(folder.join(name));
-            PictureFile::open(&target, Format::Ppm, 1, 2, Metadata::default()).unwrap()
+            PictureFile::open(&target, Format::Ppm, [1, 2], Metadata::default(), false).unwrap()
         };
         Outputs {
             picture: picture("a.ppm"),
@@ -104,7 +104,8 @@ mod tests {
     fn what_is_written_through_cannot_be_begun_anew() {
         let target = Target::Path("/dev/null".into());
         let mut outputs = Outputs {
-            picture: PictureFile::open(&target, Format::Ppm, 1, 2, Metadata::default()).unwrap(),
+            picture: PictureFile::open(&target, Format::Ppm, [1, 2], Metadata::default(), false)
+                .unwrap(),
             verdicts: None,
         };
         outputs.write(&band(1, 7)).unwrap();

@@ -37,6 +37,8 @@ pub(crate) struct PictureFile {
     width: u32,
     rows: u32,
     metadata: Metadata,
+    /// Whether its hash is wanted, whatever its format.
+    hashed: bool,
     output: Option<Output>,
 }
 
@@ -45,9 +47,9 @@ impl PictureFile {
     pub(crate) fn open(
         target: &Target,
         format: Format,
-        width: u32,
-        rows: u32,
+        [width, rows]: [u32; 2],
         metadata: Metadata,
+        hashed: bool,
     ) -> Result<Self, OutputError> {
         let mut picture = Self {
             target: target.clone(),
@@ -55,6 +57,7 @@ impl PictureFile {
             width,
             rows,
             metadata,
+            hashed,
             output: None,
         };
         if !target.is_stdout() {
@@ -66,13 +69,20 @@ impl PictureFile {
     fn opened(&mut self) -> Result<&mut Output, OutputError> {
         let output = match self.output.take() {
             Some(output) => output,
-            None => Output::open(
-                self.target.clone(),
-                self.format,
-                self.width,
-                self.rows,
-                self.metadata.clone(),
-            )?,
+            None => {
+                let output = Output::open(
+                    self.target.clone(),
+                    self.format,
+                    self.width,
+                    self.rows,
+                    self.metadata.clone(),
+                )?;
+                if self.hashed {
+                    output.hashing()
+                } else {
+                    output
+                }
+            }
         };
         Ok(self.output.insert(output))
     }

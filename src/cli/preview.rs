@@ -18,11 +18,13 @@ good picture, with the mistake over it.
 
   drag, wheel    move the viewpoint: x and y, z
   Ctrl+wheel     zoom, up to the bytes of single pixels
+  click          select what is hit: its numbers, its lines, its handles
+  Ctrl+Z, Ctrl+S undo (with Shift redo), save
   F1             all keys
 
-What is changed in the window (the viewpoint, colours, lights, spheres) lies on
-top of the file; Ctrl+S writes the numbers into the file and touches nothing
-else in it.
+What is changed in the window (any number of the scene) lies on top of the
+file; Ctrl+S writes the numbers into the file and touches nothing else in it.
+Closing asks before changes are lost.
 
 EXAMPLES
   plumb preview scene.txt

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
+use plumb::cores;
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::ExactTracer;
 use plumb::diagnostic::visible_text;
@@ -70,6 +71,7 @@ struct JsonReport<'a> {
 
 /// Renders a scene file.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
+    start_threads(&args.options);
     let name = source::name(&args.scene);
     let scene = source::load(&args.scene)?;
     let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
@@ -81,6 +83,7 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
     if io::stdin().is_terminal() {
         return Ok(Answer::Nothing);
     }
+    start_threads(options);
     let Some(scene) = source::load_stdin()? else {
         return Ok(Answer::Nothing);
     };
@@ -93,6 +96,14 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         say::talk(&String::from_utf8_lossy(&listing));
     }
     command.run()
+}
+
+/// Starts as many threads as were asked for, which the scene is read with and the picture compressed. If the system
+/// refuses they are done without, and the rendering tells it.
+fn start_threads(options: &RenderOptions) {
+    if options.threads.is_some() {
+        let _ = cores::start(options.threads);
+    }
 }
 
 /// The process's devices. They are never closed, and the process does not end by returning from `main` (see `end`): who
@@ -214,13 +225,19 @@ impl<'a> RenderCommand<'a> {
     fn open(&self, target: &Target, format: Format, settings: &Settings) -> Result<Outputs> {
         let [width, height] = self.scene.camera.pixeldim;
         let rows = settings.rows_of(height).len() as u32;
-        let open = |target: &Target, format| {
-            PictureFile::open(target, format, width, rows, self.metadata(settings))
+        let open = |target: &Target, format, hashed| {
+            PictureFile::open(
+                target,
+                format,
+                [width, rows],
+                self.metadata(settings),
+                hashed,
+            )
         };
         Ok(Outputs {
-            picture: open(target, format)?,
+            picture: open(target, format, self.options.json)?,
             verdicts: match self.verdicts(target)? {
-                Some((target, format)) => Some(open(&target, format)?),
+                Some((target, format)) => Some(open(&target, format, false)?),
                 None => None,
             },
         })
@@ -332,7 +349,7 @@ impl<'a> RenderCommand<'a> {
             output: target.to_string(),
             format: format.to_string().to_lowercase(),
             bytes: finished.bytes,
-            sha256: &finished.sha256,
+            sha256: finished.sha256.as_deref().unwrap_or_default(),
             report,
         };
         let text = serde_json::to_string_pretty(&json)? + "\n";

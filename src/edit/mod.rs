@@ -21,5 +21,5 @@ mod write;
 pub use changes::{Changes, Refused};
 pub use rebase::Dropped;
 pub use spell::camera_block;
-pub use target::{Measure, Reflectivity, Target, Value};
+pub use target::{Target, Value};
 pub use write::EditError;

@@ -28,47 +28,104 @@ impl fmt::Display for Dropped {
 /// type and name, from 0.
 type Identity<'s> = (&'static str, &'s str, usize);
 
+/// Whose value an attribute gets that was changed, and changed in the file too.
+#[derive(Clone, Copy, PartialEq)]
+enum Counts {
+    File,
+    Change,
+}
+
 impl Changes {
     /// Moves the changes from the scene `old` to the scene `new`, which the file has become under them.
     ///
     /// A change stays where its entity is still there, the n-th of its type and name (the camera whatever its name),
     /// and the file's own value is what it was; its index becomes that of the new scene. Otherwise the file counts, and
-    /// the change is returned with the reason. A change to what the file now says itself, as after saving, is dropped
-    /// without a word.
+    /// the change is returned with the reason. A change to what the file now says itself is dropped without a word.
+    /// Where what is left contradicts the file's other numbers of the entity, none of the entity stays.
     ///
     /// Takes time in the number of entities and changes.
     pub fn rebase(&mut self, old: &Scene, new: &Scene) -> Vec<Dropped> {
-        let mut dropped = Vec::new();
-        let moves = Moves::find(self, old, new);
-        for (target, value) in std::mem::take(&mut self.values) {
+        let moves = Moves::find(self.values.keys().copied(), old, new);
+        let (moved, dropped) = self.moved(&moves, [old, new], Counts::File);
+        *self = moved;
+        dropped
+    }
+
+    /// Moves changes that were once made, as [`Changes::rebase`] does, but that they count and not the file: all of
+    /// which the entity is still there stay.
+    ///
+    /// Takes time in the number of entities, and of changes of all of them.
+    pub fn rebase_earlier<'c>(
+        earlier: impl Iterator<Item = &'c mut Self>,
+        old: &Scene,
+        new: &Scene,
+    ) {
+        let mut earlier: Vec<_> = earlier.collect();
+        let targets = earlier
+            .iter()
+            .flat_map(|changes| changes.values.keys().copied());
+        let moves = Moves::find(targets, old, new);
+        for changes in &mut earlier {
+            **changes = changes.moved(&moves, [old, new], Counts::Change).0;
+        }
+    }
+
+    fn moved(
+        &self,
+        moves: &Moves,
+        [old, new]: [&Scene; 2],
+        counts: Counts,
+    ) -> (Self, Vec<Dropped>) {
+        let (mut stay, mut dropped) = (Self::new(), Vec::new());
+        let mut origins = HashMap::new();
+        for (target, value) in self.iter() {
             let moved = moves.of(target);
             let now = moved.and_then(|moved| moved.value_in(new));
-            let title = || titled(old, target.entity());
             let attribute = target.attribute();
-            let message = match (moved, now) {
+            let why = match (moved, now) {
                 (Some(_), Some(now)) if now == value => continue,
-                (Some(moved), Some(now)) if target.value_in(old) == Some(now) => {
-                    self.values.insert(moved, value);
+                (Some(moved), Some(now))
+                    if counts == Counts::Change || target.value_in(old) == Some(now) =>
+                {
+                    stay.values.insert(moved, value);
+                    origins.insert(moved, target);
                     continue;
                 }
                 (Some(_), Some(_)) => {
-                    format!(
-                        "{}: {attribute} was changed in the file, which counts",
-                        title()
-                    )
+                    format!(": {attribute} was changed in the file, which counts")
                 }
                 _ => format!(
-                    "{} is no longer in the file, and what was changed of its {attribute} is lost",
-                    title()
+                    " is no longer in the file, and what was changed of its {attribute} is lost"
                 ),
             };
+            let message = titled(old, target.entity()) + &why;
             dropped.push(Dropped {
                 target,
                 value,
                 message,
             });
         }
-        dropped
+        let mut entities: Vec<_> = stay.values.keys().map(|target| target.entity()).collect();
+        entities.dedup();
+        for entity in entities {
+            let Some(fault) = stay.fault(new, entity) else {
+                continue;
+            };
+            let wrong: Vec<_> = stay.iter().filter(|it| it.0.entity() == entity).collect();
+            for (target, value) in wrong {
+                stay.values.remove(&target);
+                dropped.push(Dropped {
+                    target: origins.get(&target).copied().unwrap_or(target),
+                    value,
+                    message: format!(
+                        "{}: what was changed of its {} contradicts the file, which counts: {fault}",
+                        titled(new, entity),
+                        target.attribute()
+                    ),
+                });
+            }
+        }
+        (stay, dropped)
     }
 }
 
@@ -76,10 +133,10 @@ impl Changes {
 struct Moves(HashMap<EntityId, EntityId>);
 
 impl Moves {
-    fn find(changes: &Changes, old: &Scene, new: &Scene) -> Self {
+    fn find(targets: impl Iterator<Item = Target>, old: &Scene, new: &Scene) -> Self {
         // Entities are counted only if they have the type and name of a changed one.
         let mut counts = HashMap::new();
-        for target in changes.values.keys() {
+        for target in targets {
             if let Some(key) = kind_and_name(old, target.entity()) {
                 counts.insert(key, 0);
             }
@@ -99,14 +156,7 @@ impl Moves {
 
     fn of(&self, target: Target) -> Option<Target> {
         let moved = *self.0.get(&target.entity())?;
-        Some(match (target, moved) {
-            (Target::Material(_, which), EntityId::Material(index)) => {
-                Target::Material(index, which)
-            }
-            (Target::Sphere(_, which), EntityId::Object(index)) => Target::Sphere(index, which),
-            (Target::Light(_), EntityId::Light(index)) => Target::Light(index),
-            (target, _) => target,
-        })
+        Some(Target::new(moved, target.attribute()))
     }
 }
 

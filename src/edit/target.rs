@@ -1,196 +1,129 @@
-//! What can be changed of a scene, and where that is in a [`Scene`]: the keys and values of
-//! [`Changes`](super::Changes).
+//! What can be changed of a scene: the keys and values of [`Changes`](super::Changes). Which attributes there are, and
+//! where in a [`Scene`] each is, the language's table knows (`scene/attributes.rs`).
+
+use std::fmt;
 
 use glam::DVec3;
 
 use crate::diagnostic::quote;
-use crate::scene::{EntityId, Scene, Shape};
+use crate::scene::{self, EntityId, MOST_NUMBERS, Scene};
 
-/// What can be changed: one attribute of one entity. In this order they stand in [`Changes`](super::Changes).
+/// What can be changed: one attribute of one entity, of those that are numbers.
+///
+/// Any pair can be named. What a scene does not have has no value in it and cannot be changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Target {
-    /// The camera's viewpoint: a vector, z > 0.
-    Viewpoint,
-    /// A reflectivity of the material of this index: r g b, each ≥ 0.
-    Material(usize, Reflectivity),
-    /// A measure of the object of this index, which is a sphere or psphere.
-    Sphere(usize, Measure),
-    /// The emissivity of the light, spotlight or projector of this index: r g b, each ≥ 0.
-    Light(usize),
+pub struct Target {
+    entity: EntityId,
+    attribute: &'static str,
 }
 
-/// The reflectivities of a material, in the order in which one writes them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Reflectivity {
-    /// For the light that is everywhere.
-    Ambient,
-    /// For light from lights.
-    Diffuse,
-    /// Of a mirror.
-    Specular,
+/// What an attribute is changed to: its numbers, as many as it has.
+#[derive(Clone, Copy)]
+pub struct Value {
+    numbers: [f64; MOST_NUMBERS],
+    count: usize,
 }
 
-/// The measures of a sphere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Measure {
-    /// Its center: a vector.
-    Center,
-    /// Its radius: a number > 0.
-    Radius,
+impl Value {
+    /// These numbers; nothing where they are more than any attribute has.
+    pub fn new(numbers: &[f64]) -> Option<Self> {
+        let mut all = [0.0; MOST_NUMBERS];
+        all.get_mut(..numbers.len())?.copy_from_slice(numbers);
+        Some(Self {
+            numbers: all,
+            count: numbers.len(),
+        })
+    }
+
+    /// Its numbers.
+    pub fn numbers(&self) -> &[f64] {
+        &self.numbers[..self.count]
+    }
+
+    /// As a place or a direction, where it is three numbers.
+    pub fn vector(&self) -> Option<DVec3> {
+        <[f64; 3]>::try_from(self.numbers())
+            .ok()
+            .map(DVec3::from_array)
+    }
+
+    /// As a scene has it: zero is never negative.
+    pub(super) fn with_positive_zeros(mut self) -> Self {
+        self.numbers.iter_mut().for_each(|number| *number += 0.0);
+        self
+    }
 }
 
-/// What an attribute is changed to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value {
-    /// One number.
-    Number(f64),
-    /// Three: x y z, or r g b.
-    Vector(DVec3),
+impl PartialEq for Value {
+    fn eq(&self, other: &Self) -> bool {
+        self.numbers() == other.numbers()
+    }
+}
+
+impl fmt::Debug for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.numbers().fmt(f)
+    }
 }
 
 impl From<f64> for Value {
     fn from(number: f64) -> Self {
-        Value::Number(number)
+        [number].into()
     }
 }
 
 impl From<DVec3> for Value {
     fn from(vector: DVec3) -> Self {
-        Value::Vector(vector)
+        vector.to_array().into()
     }
 }
 
-impl From<[f64; 3]> for Value {
-    fn from(vector: [f64; 3]) -> Self {
-        Value::Vector(vector.into())
-    }
-}
-
-impl Value {
-    /// Its numbers: one or three.
-    pub fn numbers(&self) -> &[f64] {
-        match self {
-            Value::Number(number) => std::slice::from_ref(number),
-            Value::Vector(vector) => vector.as_ref(),
-        }
-    }
-
-    /// As a scene has it: zero is never negative.
-    pub(super) fn with_positive_zeros(self) -> Self {
-        match self {
-            Value::Number(number) => Value::Number(number + 0.0),
-            Value::Vector(vector) => Value::Vector(vector + DVec3::ZERO),
-        }
-    }
-}
-
-impl Reflectivity {
-    /// All of them, in order.
-    pub const ALL: [Reflectivity; 3] = [
-        Reflectivity::Ambient,
-        Reflectivity::Diffuse,
-        Reflectivity::Specular,
-    ];
-
-    /// The attribute's name in the file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Reflectivity::Ambient => "ambient",
-            Reflectivity::Diffuse => "diffuse",
-            Reflectivity::Specular => "specular",
+impl<const COUNT: usize> From<[f64; COUNT]> for Value {
+    fn from(given: [f64; COUNT]) -> Self {
+        const { assert!(COUNT <= MOST_NUMBERS, "no attribute has so many numbers") };
+        let mut numbers = [0.0; MOST_NUMBERS];
+        numbers[..COUNT].copy_from_slice(&given);
+        Self {
+            numbers,
+            count: COUNT,
         }
     }
 }
 
 impl Target {
+    /// The camera's viewpoint.
+    pub const VIEWPOINT: Self = Self::new(EntityId::Camera, "viewpoint");
+
+    /// An attribute of an entity, by its name in docs/SCENE.md's tables.
+    pub const fn new(entity: EntityId, attribute: &'static str) -> Self {
+        Self { entity, attribute }
+    }
+
+    /// All that can be changed of an entity, in the order of docs/SCENE.md's tables.
+    pub fn all_of(scene: &Scene, entity: EntityId) -> impl Iterator<Item = Self> {
+        let rows = scene::number_rows(scene, entity);
+        rows.map(move |row| Self::new(entity, row.name()))
+    }
+
     /// The entity that it is of.
     pub fn entity(self) -> EntityId {
-        match self {
-            Target::Viewpoint => EntityId::Camera,
-            Target::Material(index, _) => EntityId::Material(index),
-            Target::Sphere(index, _) => EntityId::Object(index),
-            Target::Light(index) => EntityId::Light(index),
-        }
+        self.entity
     }
 
     /// The attribute's name in the file.
     pub fn attribute(self) -> &'static str {
-        match self {
-            Target::Viewpoint => "viewpoint",
-            Target::Material(_, reflectivity) => reflectivity.name(),
-            Target::Sphere(_, Measure::Center) => "center",
-            Target::Sphere(_, Measure::Radius) => "radius",
-            Target::Light(_) => "emissivity",
-        }
+        self.attribute
     }
 
-    /// An entity type that has this attribute; where several have it, its limits are the same in all of them (tested).
-    pub(super) fn entity_type(self) -> &'static str {
-        match self {
-            Target::Viewpoint => "camera",
-            Target::Material(..) => "material",
-            Target::Sphere(..) => "sphere",
-            Target::Light(_) => "light",
-        }
-    }
-
-    /// The value that a scene has there; nothing where it has no such entity, or the object is no sphere.
+    /// The value that a scene has there; nothing where it has no such entity, or that has no such attribute, or the
+    /// attribute was left out and that means something else than zero.
     pub fn value_in(self, scene: &Scene) -> Option<Value> {
-        match self {
-            Target::Viewpoint => Some(scene.camera.viewpoint.into()),
-            Target::Material(index, reflectivity) => {
-                let material = scene.materials.get(index)?;
-                let value = match reflectivity {
-                    Reflectivity::Ambient => material.ambient,
-                    Reflectivity::Diffuse => material.diffuse,
-                    Reflectivity::Specular => material.specular,
-                };
-                Some(value.into())
-            }
-            Target::Sphere(index, measure) => {
-                let Shape::Sphere { center, radius } = &scene.objects.get(index)?.shape else {
-                    return None;
-                };
-                Some(match measure {
-                    Measure::Center => (*center).into(),
-                    Measure::Radius => (*radius).into(),
-                })
-            }
-            Target::Light(index) => Some(scene.lights.get(index)?.emissivity.into()),
-        }
+        Value::new(&scene::numbers_of(scene, self.entity, self.attribute)?)
     }
 
     /// Puts a value of the right length there; nothing happens where there is nothing of the kind.
     pub(super) fn put(self, scene: &mut Scene, value: Value) {
-        match (self, value) {
-            (Target::Viewpoint, Value::Vector(value)) => scene.camera.viewpoint = value,
-            (Target::Material(index, reflectivity), Value::Vector(value)) => {
-                if let Some(material) = scene.materials.get_mut(index) {
-                    match reflectivity {
-                        Reflectivity::Ambient => material.ambient = value,
-                        Reflectivity::Diffuse => material.diffuse = value,
-                        Reflectivity::Specular => material.specular = value,
-                    }
-                }
-            }
-            (Target::Sphere(index, measure), value) => {
-                if let Some(object) = scene.objects.get_mut(index)
-                    && let Shape::Sphere { center, radius } = &mut object.shape
-                {
-                    match (measure, value) {
-                        (Measure::Center, Value::Vector(value)) => *center = value,
-                        (Measure::Radius, Value::Number(value)) => *radius = value,
-                        _ => {}
-                    }
-                }
-            }
-            (Target::Light(index), Value::Vector(value)) => {
-                if let Some(light) = scene.lights.get_mut(index) {
-                    light.emissivity = value;
-                }
-            }
-            (Target::Viewpoint | Target::Material(..) | Target::Light(_), Value::Number(_)) => {}
-        }
+        scene::put(scene, self.entity, self.attribute, value.numbers());
     }
 }
 

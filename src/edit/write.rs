@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use super::changes::Changes;
 use super::spell;
-use super::target::{Reflectivity, Target};
+use super::target::Target;
 use crate::diagnostic::Diagnostics;
-use crate::scene::{EntityId, Given, MAX_FILE, Place, number_at, parse_text, places};
+use crate::scene::{
+    EntityId, Given, MAX_FILE, Place, Scene, number_at, number_rows, parse_text, places,
+};
 
 /// Why changes could not be written into a text. Nothing of it is changed then.
 #[derive(Debug, thiserror::Error)]
@@ -15,7 +17,7 @@ pub enum EditError {
     #[error("a scene with mistakes cannot be changed\n{0}")]
     Scene(#[from] Diagnostics),
     /// The text has no such entity: the changes are of another.
-    #[error("{} cannot be written: this text has no {}", .0.attribute(), numbered(.0.entity()))]
+    #[error("{} cannot be written: this text has no {} with it", .0.attribute(), numbered(.0.entity()))]
     Missing(Target),
     /// It would be larger than a scene may be.
     #[error("with the changes the scene would be too large: more than {} MiB", MAX_FILE >> 20)]
@@ -28,7 +30,7 @@ fn numbered(id: EntityId) -> String {
         EntityId::Camera => String::from("camera"),
         EntityId::Material(index) => format!("material number {}", index + 1),
         EntityId::Texture(index) => format!("texture number {}", index + 1),
-        EntityId::Object(index) => format!("sphere that is object number {}", index + 1),
+        EntityId::Object(index) => format!("object number {}", index + 1),
         EntityId::Light(index) => format!("light number {}", index + 1),
     }
 }
@@ -53,20 +55,22 @@ impl Changes {
         let scene = parse_text("the scene", text)?;
         let places = places(text);
         let mut edits = Vec::new();
-        for (target, value) in self.iter() {
+        let mut changes: Vec<_> = self.iter().collect();
+        // In the order in which one writes them.
+        changes.sort_by_cached_key(|(target, _)| (target.entity(), row_number(&scene, *target)));
+        for (target, value) in changes {
             let missing = || EditError::Missing(target);
             if target.value_in(&scene).ok_or_else(missing)? == value {
                 continue;
             }
             let place = places.of(text, target.entity()).ok_or_else(missing)?;
-            match (place.given(target.attribute()), target) {
-                (Some(given), _) => respell(text, given, value.numbers(), &mut edits),
-                (None, Target::Material(_, reflectivity)) => {
-                    let edit = add(text, &place, reflectivity, value.numbers());
+            match place.given(target.attribute()) {
+                Some(given) => respell(text, given, value.numbers(), &mut edits),
+                // It has a value, so it is one that may be left out.
+                None => {
+                    let edit = add(text, &place, &names_before(&scene, target), value.numbers());
                     edits.push(edit.ok_or_else(missing)?);
                 }
-                // Every other attribute that can be changed is required.
-                (None, _) => return Err(missing()),
             }
         }
         // Several that are added in one place stay in their order.
@@ -124,16 +128,27 @@ fn respell(text: &[u8], given: &Given, values: &[f64], edits: &mut Vec<Edit>) {
     }
 }
 
-/// Adds a reflectivity to the block of a material that does not give it: after the last one that stands before it in
-/// docs/SCENE.md, or at the end. Nothing for an empty block, which no material has.
-fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -> Option<Edit> {
+/// The place of an attribute among the numbers of its entity, in the order of docs/SCENE.md.
+fn row_number(scene: &Scene, target: Target) -> Option<usize> {
+    number_rows(scene, target.entity()).position(|row| row.name() == target.attribute())
+}
+
+/// The names of an entity's numbers up to an attribute, in the order of docs/SCENE.md.
+fn names_before(scene: &Scene, target: Target) -> Vec<&'static str> {
+    let end = row_number(scene, target).map_or(0, |number| number + 1);
+    let rows = number_rows(scene, target.entity()).take(end);
+    rows.map(|row| row.name()).collect()
+}
+
+/// Adds an attribute to the block of an entity that does not give it: the last one of these `names`, behind the last
+/// one given of those before it, or at the end. Nothing for an empty block, which no entity has.
+fn add(text: &[u8], place: &Place, names: &[&'static str], values: &[f64]) -> Option<Edit> {
     let given = &place.given;
-    let before = |other: &&Reflectivity| **other < reflectivity;
-    let index = Reflectivity::ALL
+    let (name, before) = names.split_last()?;
+    let index = before
         .iter()
         .rev()
-        .filter(before)
-        .find_map(|other| given.iter().position(|given| given.name == other.name()))
+        .find_map(|other| given.iter().position(|given| given.name == *other))
         .or(given.len().checked_sub(1))?;
     let anchor = given.get(index)?;
     let end = last_byte(anchor);
@@ -155,7 +170,7 @@ fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -
                 .map(|separator| &text[separator])
                 .find(|separator| separator.iter().all(is_blank))
                 .unwrap_or(b" ");
-            let bytes = [separator, &entry(b" ", reflectivity, values)].concat();
+            let bytes = [separator, &entry(b" ", name, values)].concat();
             return Some(Edit {
                 place: end..end,
                 bytes,
@@ -170,8 +185,8 @@ fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -
         None if text[..line.start].ends_with(b"\r\n") => b"\r\n",
         None => &text[line.start - 1..line.start],
     };
-    let gap = gap(text, place, anchor, reflectivity);
-    let entry = entry(&gap, reflectivity, values);
+    let gap = gap(text, place, anchor, name);
+    let entry = entry(&gap, name, values);
     let bytes = [line_end, &text[line], &entry].concat();
     Some(Edit {
         place: at..at,
@@ -180,9 +195,8 @@ fn add(text: &[u8], place: &Place, reflectivity: Reflectivity, values: &[f64]) -
 }
 
 /// An attribute as it is written.
-fn entry(gap: &[u8], reflectivity: Reflectivity, values: &[f64]) -> Vec<u8> {
-    let name = reflectivity.name().as_bytes();
-    [name, gap, spell::numbers(values).as_bytes()].concat()
+fn entry(gap: &[u8], name: &str, values: &[f64]) -> Vec<u8> {
+    [name.as_bytes(), gap, spell::numbers(values).as_bytes()].concat()
 }
 
 /// The indentation of the line that an attribute of a block begins; nothing if it does not begin one. Its start is not
@@ -200,7 +214,7 @@ fn line_of(text: &[u8], place: &Place, given: &Given) -> Option<Range<usize>> {
 
 /// What stands between an added name and its values: as behind a neighbour's name, so that values line up where those
 /// of the block do.
-fn gap(text: &[u8], place: &Place, anchor: &Given, reflectivity: Reflectivity) -> Vec<u8> {
+fn gap(text: &[u8], place: &Place, anchor: &Given, name: &str) -> Vec<u8> {
     let gap_of = |given: &Given| &text[given.key.end..given.values[0].start];
     let gap = gap_of(anchor);
     if gap.contains(&b'\t') && gap.iter().all(is_blank) {
@@ -209,7 +223,7 @@ fn gap(text: &[u8], place: &Place, anchor: &Given, reflectivity: Reflectivity) -
     let is_spaces = |gap: &[u8]| gap.iter().all(|byte| *byte == b' ');
     let in_columns = |given: &Given| gap_of(given).len() > 1 && is_spaces(gap_of(given));
     let column = anchor.key.len() + gap.len();
-    let width = column.saturating_sub(reflectivity.name().len());
+    let width = column.saturating_sub(name.len());
     if is_spaces(gap) && place.given.iter().any(in_columns) {
         vec![b' '; width.max(1)]
     } else {

@@ -11,7 +11,6 @@ use serde::Serialize;
 use super::GpuError;
 use super::device::{Gpu, describe, driver, full_name};
 use super::selftest::{self, Outcome};
-use crate::settings::Settings;
 use crate::shader::constants::WORKGROUP;
 
 /// An adapter, for `plumb doctor`.
@@ -64,7 +63,7 @@ pub fn list() -> Vec<AdapterSummary> {
         }
         summary
     };
-    enumerate().iter().map(tested).collect()
+    enumerate(instance()).iter().map(tested).collect()
 }
 
 /// What [`VARIABLE`] says, if it says anything.
@@ -78,78 +77,18 @@ pub fn wanted_by_variable() -> Option<String> {
 /// # Errors
 /// If there is none.
 pub fn find(wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
-    choose(&enumerate(), &Wish::new(wanted)).cloned()
+    choose(&enumerate(instance()), wanted).cloned()
 }
 
-/// Which adapter is asked for, if one is: a part of its name, and who asks.
-struct Wish(Option<(String, &'static str)>);
-
-impl Wish {
-    /// As the caller wants it, else as the environment does.
-    fn new(wanted: Option<&str>) -> Self {
-        let by_option = wanted.map(|part| (part.to_owned(), "--adapter"));
-        Self(by_option.or_else(|| Some((wanted_by_variable()?, VARIABLE))))
+pub(super) fn choose<'a>(
+    adapters: &'a [wgpu::Adapter],
+    wanted: Option<&str>,
+) -> Result<&'a wgpu::Adapter, GpuError> {
+    match (wanted, wanted_by_variable()) {
+        (Some(part), _) => named(adapters, part, "--adapter"),
+        (None, Some(part)) => named(adapters, &part, VARIABLE),
+        (None, None) => first_usable(adapters),
     }
-}
-
-/// Whether the settings or the environment name an adapter.
-pub fn is_one_named(settings: &Settings) -> bool {
-    Wish::new(settings.adapter.as_deref()).0.is_some()
-}
-
-/// Adapters that a picture may be made on together.
-#[derive(Debug)]
-pub enum Candidates {
-    /// These: the one that was named, else all that are hardware, else the first that is software.
-    Adapters(Vec<wgpu::Adapter>),
-    /// There is software only, which was not asked for; it is called this.
-    Software(String),
-}
-
-/// The adapters for a picture: the one that was named, or all that are hardware and can be used; where there are none,
-/// the first that is software, if that will do.
-///
-/// # Errors
-/// If there is none.
-pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, GpuError> {
-    let (all, wish) = (enumerate(), Wish::new(wanted));
-    let is_named = wish.0.is_some();
-    if !is_named {
-        let is_hardware = |adapter: &&wgpu::Adapter| {
-            !is_software(&adapter.get_info()) && problem(adapter).is_none()
-        };
-        let hardware: Vec<_> = all.iter().filter(is_hardware).cloned().collect();
-        if !hardware.is_empty() {
-            return Ok(Candidates::Adapters(hardware));
-        }
-    }
-    let first = choose(&all, &wish)?;
-    if !is_named && !software && is_software(&first.get_info()) {
-        return Ok(Candidates::Software(first.get_info().name));
-    }
-    Ok(Candidates::Adapters(vec![first.clone()]))
-}
-
-pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
-    info.device_type == wgpu::DeviceType::Cpu
-}
-
-/// Whether there may be an adapter that is no software, as far as can be told without loading a driver: on Linux GPUs
-/// are files in /dev.
-pub fn may_be_hardware() -> bool {
-    if !cfg!(target_os = "linux") {
-        return true;
-    }
-    let is_gpu = |name: &str| {
-        ["nvidia", "dxg", "kfd", "mali", "kgsl"]
-            .iter()
-            .any(|start| name.starts_with(start))
-    };
-    let holds = |folder: &str, is_gpu: &dyn Fn(&str) -> bool| {
-        let mut entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.any(|entry| is_gpu(&entry.file_name().to_string_lossy()))
-    };
-    holds("/dev/dri", &|name| name.starts_with("renderD")) || holds("/dev", &is_gpu)
 }
 
 /// Opens the adapter that [`find`] finds, for the caller alone.
@@ -211,10 +150,10 @@ impl Shared {
 }
 
 /// A device for a window, with what else a window is made from.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Opened {
     /// The device.
-    pub gpu: Gpu,
+    pub gpu: Arc<Gpu>,
     /// What adapters and surfaces come from.
     pub instance: wgpu::Instance,
     /// The adapter that it was opened on.
@@ -228,29 +167,56 @@ pub struct Opened {
 pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
     let adapter = find(wanted)?;
     Ok(Opened {
-        gpu: Gpu::open(&adapter)?,
+        gpu: Arc::new(Gpu::open(&adapter)?),
         instance: instance().clone(),
         adapter,
     })
 }
 
-/// The process's one instance. It is never dropped, since that unloads the driver, and NVIDIA's can be loaded about
-/// thirty times in a process only: the next instance finds no adapter, or the process dies. So a process may open as
-/// many devices, one after the other, as it likes; and only the first of them waits for the driver.
-fn instance() -> &'static wgpu::Instance {
+/// The device that draws the window in which the pictures of `renderer` are shown, which was opened for the same
+/// `wanted`.
+///
+/// On a GPU that is the same device: it changes from one work to the next in a moment, and pictures need not be moved.
+/// A driver that computes on the CPU works off what it is given in the order in which it came, and keeps whoever hands
+/// something in waiting meanwhile. There the window has a device of its own, on an instance of its own, since a driver's
+/// threads belong to its instance: neither queue nor threads are shared, and the system's scheduler decides who goes
+/// first.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_beside(renderer: &Opened, wanted: Option<&str>) -> Result<Opened, GpuError> {
+    if renderer.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
+        return Ok(renderer.clone());
+    }
     static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
-    INSTANCE.get_or_init(|| {
-        wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::PRIMARY,
-            flags: wgpu::InstanceFlags::empty().with_env(),
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        })
+    let instance = INSTANCE.get_or_init(new_instance);
+    let adapter = choose(&enumerate(instance), wanted)?.clone();
+    Ok(Opened {
+        gpu: Arc::new(Gpu::open(&adapter)?),
+        instance: instance.clone(),
+        adapter,
+    })
+}
+
+/// The instance that all rendering is done on. It is never dropped, since that unloads the driver, and NVIDIA's can be
+/// loaded about thirty times in a process only: the next instance finds no adapter, or the process dies. So a process
+/// may open as many devices, one after the other, as it likes; and only the first of them waits for the driver.
+pub(super) fn instance() -> &'static wgpu::Instance {
+    static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
+    INSTANCE.get_or_init(new_instance)
+}
+
+fn new_instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        flags: wgpu::InstanceFlags::empty().with_env(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
     })
 }
 
 /// All adapters, those that plumb prefers first.
-fn enumerate() -> Vec<wgpu::Adapter> {
-    let mut adapters = pollster::block_on(instance().enumerate_adapters(wgpu::Backends::PRIMARY));
+pub(super) fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     // The sort is stable, so that adapters of equal rank stay in the system's order.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     adapters
@@ -266,23 +232,23 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
-fn choose<'a>(adapters: &'a [wgpu::Adapter], wish: &Wish) -> Result<&'a wgpu::Adapter, GpuError> {
-    let first = adapters.first().ok_or(GpuError::NoAdapter)?;
+/// The first whose name contains this part of it, as `asker` wants it.
+fn named<'a>(
+    adapters: &'a [wgpu::Adapter],
+    part: &str,
+    asker: &'static str,
+) -> Result<&'a wgpu::Adapter, GpuError> {
     let name = |adapter: &wgpu::Adapter| describe(&adapter.get_info());
-    if let Wish(Some((part, asker))) = wish {
-        let mut found = adapters.iter();
-        return found
-            .find(|adapter| is_part_of(part, &name(adapter)))
-            .ok_or_else(|| GpuError::NoSuchAdapter {
-                wanted: part.clone(),
-                asker,
-                found: adapters.iter().map(name).collect(),
-            });
-    }
-    let usable = adapters.iter().find(|adapter| problem(adapter).is_none());
-    usable.ok_or_else(|| GpuError::Device {
-        adapter: name(first),
-        reason: problem(first).unwrap_or_default(),
+    let found = adapters
+        .iter()
+        .find(|adapter| is_part_of(part, &name(adapter)));
+    found.ok_or_else(|| match adapters {
+        [] => GpuError::NoAdapter,
+        _ => GpuError::NoSuchAdapter {
+            wanted: part.to_owned(),
+            asker,
+            found: adapters.iter().map(name).collect(),
+        },
     })
 }
 
@@ -291,8 +257,17 @@ fn is_part_of(part: &str, name: &str) -> bool {
     name.to_lowercase().contains(&part.to_lowercase())
 }
 
+fn first_usable(adapters: &[wgpu::Adapter]) -> Result<&wgpu::Adapter, GpuError> {
+    let first = adapters.first().ok_or(GpuError::NoAdapter)?;
+    let usable = adapters.iter().find(|adapter| problem(adapter).is_none());
+    usable.ok_or_else(|| GpuError::Device {
+        adapter: describe(&first.get_info()),
+        reason: problem(first).unwrap_or_default(),
+    })
+}
+
 /// Why plumb cannot use the adapter, if so.
-fn problem(adapter: &wgpu::Adapter) -> Option<String> {
+pub(super) fn problem(adapter: &wgpu::Adapter) -> Option<String> {
     let limits = adapter.limits();
     let flags = adapter.get_downlevel_capabilities().flags;
     if !flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
@@ -360,7 +335,7 @@ mod tests {
         let on_thread = std::thread::scope(|scope| scope.spawn(get).join().unwrap());
         assert!(Arc::ptr_eq(&first, &on_thread));
         // This one is refused: a buffer to be mapped for reading must not be one of a scene.
-        let _ = first.device.create_buffer(&wgpu::BufferDescriptor {
+        let _refused = first.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: 4,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::STORAGE,

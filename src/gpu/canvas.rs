@@ -50,6 +50,27 @@ impl Canvas {
         Ok(Self { pixels, size })
     }
 
+    /// A picture of these words that does not change any more, on a device that did not render it.
+    ///
+    /// # Errors
+    /// If the device has no memory for it.
+    pub fn of(gpu: &Gpu, size: [u32; 2], words: &[u32]) -> Result<Self, GpuError> {
+        let pixels = gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("canvas"),
+                contents: bytemuck::cast_slice(words),
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            });
+        gpu.check()?;
+        Ok(Self { pixels, size })
+    }
+
+    /// The word of a pixel with these bytes, decided by that.
+    pub fn word([r, g, b]: [u8; 3], by: DecidedBy) -> u32 {
+        u32::from_le_bytes([r, g, b, by as u8])
+    }
+
     /// Takes over `size` pixels, whose rows are `pitch` words long, from a byte of a buffer on. They go to column
     /// `at[0]` of the rows below row `at[1]`, which is counted from the bottom, as everywhere else.
     pub(super) fn take(
@@ -107,10 +128,7 @@ impl Scatter {
         let words: Vec<[u32; 2]> = records
             .map(|(i, bytes)| (i, bytes, verdict(i)))
             .filter(|(.., by)| *by != DecidedBy::Gpu)
-            .map(|(i, [r, g, b], by)| {
-                let place = (first + i as u64) as u32;
-                [place, u32::from_le_bytes([*r, *g, *b, by as u8])]
-            })
+            .map(|(i, bytes, by)| [(first + i as u64) as u32, Canvas::word(*bytes, by)])
             .collect();
         // A list may be as long as a buffer, half as many records as there are pixels.
         for words in words.chunks(Canvas::most(gpu) as usize / 2) {

@@ -4,8 +4,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
-use super::adapters::is_software;
 use super::bands::buffers::BufferPool;
+use super::candidates::is_software;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
@@ -264,7 +264,7 @@ pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
 }
 
 /// All that tells an adapter from others, in a line.
-pub fn identity(info: &wgpu::AdapterInfo) -> String {
+fn identity(info: &wgpu::AdapterInfo) -> String {
     let wgpu::AdapterInfo {
         name,
         vendor,

@@ -11,6 +11,7 @@ use super::png::Png;
 use super::sink::Sink;
 use super::target::Target;
 use super::{Format, OutputError};
+use crate::cores;
 use crate::frame::Band;
 use crate::ppm;
 use crate::scene::Scene;
@@ -125,8 +126,9 @@ impl Metadata {
 /// A picture that was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finished {
-    /// The picture's hash, 64 lowercase hexadecimal digits: the SHA-256 of its PPM file.
-    pub sha256: String,
+    /// The picture's hash, 64 lowercase hexadecimal digits: the SHA-256 of its PPM file. Of PNG and EXR, which tell it,
+    /// always; of PPM if it was asked for ([`Output::hashing`]).
+    pub sha256: Option<String>,
     /// Length of the file that was written, in bytes.
     pub bytes: u64,
 }
@@ -136,7 +138,7 @@ pub struct Output {
     target: Target,
     to: Counted,
     encoder: Encoder,
-    hash: Sha256,
+    hash: Option<Sha256>,
     width: u32,
     rows: u32,
     metadata: Metadata,
@@ -150,6 +152,19 @@ enum Encoder {
     Ppm,
     Png(Box<Png>),
     Exr(Exr),
+}
+
+impl Encoder {
+    fn write(&mut self, band: &Band, to: &mut Counted) -> io::Result<()> {
+        match self {
+            Self::Ppm => to.write_all(&band.rgb),
+            Self::Png(png) => png.write(&band.rgb, to),
+            Self::Exr(exr) => {
+                exr.write(band.values.as_deref().unwrap_or_default());
+                Ok(())
+            }
+        }
+    }
 }
 
 /// Counts what goes on to the sink.
@@ -229,7 +244,7 @@ impl Output {
                     source,
                 })?;
         }
-        let hash = Sha256::new_with_prefix(&header);
+        let hash = (format != Format::Ppm).then(|| Sha256::new_with_prefix(&header));
         Ok(Self {
             target,
             to,
@@ -242,6 +257,15 @@ impl Output {
             next: None,
             failed: false,
         })
+    }
+
+    /// Hashes the picture whatever its format is; to be asked for before the first rows are written.
+    #[must_use]
+    pub fn hashing(mut self) -> Self {
+        let header = ppm::header(self.width, self.rows);
+        self.hash
+            .get_or_insert_with(|| Sha256::new_with_prefix(&header));
+        self
     }
 
     /// Whether nothing reaches the target before [`finish`](Output::finish); devices, pipes and stdout are written
@@ -308,14 +332,18 @@ impl Output {
         }
     }
 
+    /// Hashes the band, if that is wanted, on another core while it is written here.
     fn encode(&mut self, band: &Band) -> io::Result<()> {
-        self.hash.update(&band.rgb);
-        match &mut self.encoder {
-            Encoder::Ppm => self.to.write_all(&band.rgb),
-            Encoder::Png(png) => png.write(&band.rgb, &mut self.to),
-            Encoder::Exr(exr) => {
-                exr.write(band.values.as_deref().unwrap_or_default());
-                Ok(())
+        let (to, encoder) = (&mut self.to, &mut self.encoder);
+        match &mut self.hash {
+            None => encoder.write(band, to),
+            Some(hash) if cores::are_several() => rayon::in_place_scope(|beside| {
+                beside.spawn(|_| hash.update(&band.rgb));
+                encoder.write(band, to)
+            }),
+            Some(hash) => {
+                hash.update(&band.rgb);
+                encoder.write(band, to)
             }
         }
     }
@@ -344,16 +372,17 @@ impl Output {
                 rows,
             });
         }
-        let sha256: String = hash
-            .finalize()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect();
+        let digits = |byte: &u8| format!("{byte:02x}");
+        let sha256 = hash.map(|hash| hash.finalize().iter().map(digits).collect::<String>());
+        // PNG and EXR are hashed always.
+        let told = sha256.as_deref().unwrap_or_default();
         let ended = match encoder {
             Encoder::Ppm => Ok(()),
-            Encoder::Png(png) => png.finish(HASH_KEY, &sha256, &mut to),
+            Encoder::Png(png) => png.finish(HASH_KEY, told, &mut to),
             Encoder::Exr(exr) => {
-                metadata.entries.push((HASH_KEY.to_owned(), sha256.clone()));
+                metadata
+                    .entries
+                    .push((HASH_KEY.to_owned(), told.to_owned()));
                 exr.finish(&metadata.entries, &mut to.sink)
                     .map(|bytes| to.bytes = bytes)
             }

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::camera::Camera;
 use super::groups::groups;
 use super::hidden::hidden;
@@ -16,7 +18,7 @@ use super::sphere::Sphere;
 use super::surface::Surface;
 use super::world::World;
 use crate::real::Real;
-use crate::scene::{Scene, Shape, Texels};
+use crate::scene::{self, Scene, Shape, Texels};
 use crate::settings::ViewParameters;
 
 /// A scene made ready for tracing rays from its viewpoint, in the number type `R`.
@@ -80,8 +82,8 @@ impl<R: Real> Prepared<R> {
         let tolerance = view.screen_tolerance;
         let quadrics = Quadric::all(scene, scale, tolerance, &hidden, &groups);
         prepared.quadrics = Arc::new(quadrics);
-        let materials = scene.objects.iter().map(|object| object.material);
-        let is_plane = scene.objects.iter().map(|object| match object.shape {
+        let materials = scene.objects.par_iter().map(|object| object.material);
+        let is_plane = scene.objects.par_iter().map(|object| match object.shape {
             Shape::Plane { .. } => true,
             Shape::Sphere { .. } | Shape::Quadric(_) => false,
             Shape::Triangle(_) => true,
@@ -140,12 +142,14 @@ impl<R: Real> Prepared<R> {
     fn of(scene: &Scene, view: ViewParameters, with_spheres: bool, hidden: &[bool]) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
-        let mut surfaces = Vec::with_capacity(scene.objects.len());
+        let surfaces = scene
+            .objects
+            .par_iter()
+            .map(|object| Surface::new(scene, object));
         // Many spheres are made with their tiles, or later.
         let few = with_spheres && scene.objects.len() < screen_grid::WORTHWHILE;
         let mut spheres = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
-            surfaces.push(Surface::new(scene, object));
             match object.shape {
                 _ if hidden[index] => {}
                 Shape::Plane {
@@ -177,10 +181,12 @@ impl<R: Real> Prepared<R> {
                 Shape::Sphere { .. } | Shape::Triangle(_) | Shape::Quadric(_) => {}
             }
         }
-        let any_transparent = scene
-            .objects
-            .iter()
-            .any(|object| scene.materials[object.material].transparency != 0.0);
+        let is_transparent = |material: &scene::Material| material.transparency != 0.0;
+        let any_transparent = scene.materials.iter().any(is_transparent)
+            && scene
+                .objects
+                .par_iter()
+                .any(|object| is_transparent(&scene.materials[object.material]));
         let palette = scene.materials.iter().map(Material::new).collect();
         let textures = scene
             .textures
@@ -195,7 +201,7 @@ impl<R: Real> Prepared<R> {
             triangles: Vec::new(),
             screen_grid: None,
             on_demand: None,
-            surfaces,
+            surfaces: surfaces.collect(),
             materials: Arc::default(),
             is_plane: Arc::default(),
             groups: Arc::default(),

@@ -16,6 +16,8 @@ pub(super) struct AdaptiveResolution {
     least: Option<f64>,
     /// Seconds of the whole picture.
     whole: Option<f64>,
+    /// Seconds of the certified picture.
+    certified: Option<f64>,
 }
 
 impl AdaptiveResolution {
@@ -51,6 +53,20 @@ impl AdaptiveResolution {
             let says = fixed + (seconds - fixed) * f64::from(smaller * smaller);
             *whole = 0.5 * (*whole + says);
         }
+    }
+
+    /// Whether a whole fast picture should come between a smaller one and the certified one: only where it is known to
+    /// be there in less than half of the time. On a driver that computes on the CPU it is not: a shader that serves
+    /// every viewpoint loads what a certified picture's shader has in its text.
+    pub(super) fn is_whole_worth_it(&self) -> bool {
+        self.whole
+            .zip(self.certified)
+            .is_some_and(|(whole, certified)| whole < 0.5 * certified)
+    }
+
+    /// The certified picture took so long.
+    pub(super) fn took_certified(&mut self, seconds: f64) {
+        self.certified = Some(seconds);
     }
 
     /// A whole picture was given up after so long, when this share of it was done.
@@ -114,6 +130,17 @@ mod tests {
             assert!(resolution.first() <= smaller);
         }
         assert_eq!(resolution.first(), 1);
+    }
+
+    #[test]
+    fn a_whole_fast_picture_is_made_where_it_is_known_to_be_quicker() {
+        let mut resolution = AdaptiveResolution::default();
+        resolution.took(1, 2.0);
+        assert!(!resolution.is_whole_worth_it());
+        resolution.took_certified(5.0);
+        assert!(resolution.is_whole_worth_it());
+        resolution.took_certified(3.0);
+        assert!(!resolution.is_whole_worth_it());
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! The window: brings together the file, the pictures, the panels, and what the user does.
 //!
-//! Here are its parts, and a frame; `doing` has what keys, mouse and panels ask for, `asking` what is wanted to be
-//! known of the picture.
+//! Here are its parts, and a frame; `doing` has what keys and panels ask for, `hands` what the mouse does on the
+//! picture, `asking` what is wanted to be known of it, `leaving` what is asked before the window closes.
 
 mod asking;
 mod doing;
+mod hands;
+mod leaving;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,10 +16,12 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Rect, Ui};
 
+use super::canvases::Canvases;
+use super::handles::Grabbed;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
-use super::keys;
-use super::overlay::{self, Chosen, Leaving, SaveAs};
+use super::keys::Command;
+use super::overlay::{self, Chosen, SaveAs};
 use super::picture::{self, Showing};
 use super::screen::{self, ObjectMap};
 use super::session::{self, Session};
@@ -26,13 +30,16 @@ use super::side::{self, Side};
 use super::status::{self, Line};
 use super::watch::Watcher;
 use super::worker::{self, PreviewPicture, Worker};
-use super::{Options, inspector};
-use crate::gpu::canvas::Scatter;
+use super::{Devices, Options, inspector};
 use crate::gpu::device::Gpu;
 use crate::scene::EntityId;
+use leaving::Leaving;
 
 /// What is said stays in the status line for so long.
 const SAID: Duration = Duration::from_secs(12);
+
+/// Figures that change are drawn anew so often.
+const FIGURES: Duration = Duration::from_millis(250);
 
 /// What other threads tell the window.
 enum Event {
@@ -61,7 +68,10 @@ impl Teller {
 
 /// The window.
 pub(super) struct App {
+    /// The device that renders.
     gpu: Arc<Gpu>,
+    /// The device that draws the window; perhaps the same.
+    window: Arc<Gpu>,
     options: Options,
     shared: SharedSession,
     events: Receiver<Event>,
@@ -80,16 +90,23 @@ pub(super) struct App {
     panel: Panel,
     panel_open: bool,
     /// What was asked last: of which wish, which pixel; whether the picture stays, whether which objects are seen.
-    asked: Option<(u64, Option<[u32; 2]>, [bool; 2])>,
+    asked: Option<(u64, Option<[u32; 2]>, [bool; 3])>,
     seen: Option<(u64, Arc<ObjectMap>)>,
     outlined: Option<(u64, EntityId)>,
     over: Option<[u32; 2]>,
+    /// The pixel that was clicked, as long as it is not known what it shows.
+    clicked: Option<[u32; 2]>,
+    /// The handle that is dragged.
+    grabbed: Option<Grabbed>,
+    /// How often a button of the mouse was pressed.
+    presses: u64,
     area: Option<Rect>,
     help_open: bool,
     save_as: Option<SaveAs>,
-    /// Whether the window is to be closed, and asks what becomes of changes; once they are saved, in which case it does
-    /// not ask.
-    leaving: Option<bool>,
+    /// Whether the window is to be closed.
+    leaving: Leaving,
+    /// What is to be done once a field of text was left.
+    deferred: Vec<Command>,
     /// What is being saved or read beside the window.
     threads: Vec<JoinHandle<()>>,
     /// Set when the window closes: pictures that are being saved are given up.
@@ -104,22 +121,22 @@ impl App {
     /// Sets the window up on its device, and begins to watch, read and render.
     pub(super) fn new(
         creation: &eframe::CreationContext<'_>,
-        gpu: Arc<Gpu>,
+        Devices { gpu, window }: Devices,
         options: Options,
     ) -> anyhow::Result<Self> {
         let state = creation.wgpu_render_state.as_ref();
         screen::install(state.ok_or_else(|| anyhow::anyhow!("egui does not draw with wgpu"))?);
-        gpu.check()?;
+        window.check()?;
         let (sender, events) = mpsc::channel();
         let teller = Teller {
             events: sender,
             context: creation.egui_ctx.clone(),
         };
         let tell = teller.clone();
-        let scatter = Scatter::new(&gpu)?;
+        let canvases = Canvases::new(&gpu, &window)?;
         let worker = Worker::new(
             Arc::clone(&gpu),
-            scatter,
+            canvases,
             options.settings.clone(),
             move |news| tell.tell(Event::Rendered(news)),
         )?;
@@ -142,6 +159,7 @@ impl App {
         Ok(Self {
             shared,
             gpu,
+            window,
             options,
             events,
             teller,
@@ -159,10 +177,14 @@ impl App {
             seen: None,
             outlined: None,
             over: None,
+            clicked: None,
+            grabbed: None,
+            presses: 0,
             area: None,
             help_open: false,
             save_as: None,
-            leaving: None,
+            leaving: Leaving::default(),
+            deferred: Vec::new(),
             threads: Vec::new(),
             closing: Arc::new(AtomicBool::new(false)),
             said: None,
@@ -198,9 +220,9 @@ impl App {
                 }
                 Event::Inspected(answer) => self.answered(answer),
                 Event::Saved(saved) => {
-                    if let (Err(_), Some(true)) = (&saved, self.leaving) {
+                    if saved.is_err() {
                         // There is something to be read first.
-                        self.leaving = None;
+                        self.leaving.stop_saving();
                     }
                     let (Ok(text) | Err(text)) = saved;
                     self.say(text);
@@ -226,7 +248,7 @@ impl App {
         let kind = self.picture.as_ref().map(status::kind).unwrap_or_default();
         let state = self.shared.lock();
         let session = &state.session;
-        let star = if session.changes().is_empty() {
+        let star = if session.unsaved().is_empty() {
             ""
         } else {
             "*"
@@ -252,9 +274,6 @@ impl App {
         let frames = self.frames();
         let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
         let picture = self.picture.as_ref();
-        let wished = self.shared.lock().wished;
-        let working =
-            picture.map_or(wished > 0, |picture| picture.number != wished) && self.failed.is_none();
         let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
         let scale = f64::from(ui.ctx().pixels_per_point());
         let placed = self.area.map(|rect| {
@@ -263,8 +282,7 @@ impl App {
                 .place(picture::area(rect, scale), size)
         });
         let line = Line {
-            working,
-            share: self.worker.progress.share(),
+            doing: self.doing(),
             zoom: placed.map_or(1.0, |placed| placed.zoom),
             frames,
             pixel: self.over.and_then(|pixel| {
@@ -273,13 +291,30 @@ impl App {
             }),
             said: said.map(|(text, _)| text.clone()),
         };
-        if line.share.is_some() || frames.is_some() || said.is_some() {
+        if line.doing.is_some() || frames.is_some() || said.is_some() {
             // The line is drawn again soon, so that its figures do not stand still.
-            ui.ctx().request_repaint_after(Duration::from_millis(100));
+            ui.ctx().request_repaint_after(FIGURES);
         }
         if status::show(ui, picture, &line) {
             self.help_open = true;
         }
+    }
+
+    /// What is being done, if anything.
+    fn doing(&self) -> Option<String> {
+        let state = self.shared.lock();
+        if state.wished == 0 {
+            // Nothing is wished for while there is no scene; what is wrong with the file is said elsewhere.
+            return state
+                .session
+                .trouble
+                .is_none()
+                .then(|| "reading the scene".into());
+        }
+        let shown = self.picture.as_ref().map(|picture| picture.number);
+        let behind = shown != Some(state.wished) && self.failed.is_none();
+        let words = self.worker.progress.doing().words();
+        words.or_else(|| behind.then(|| "rendering next".into()))
     }
 
     fn middle(&mut self, ui: &mut Ui) {
@@ -288,14 +323,15 @@ impl App {
         match &self.picture {
             Some(picture) => {
                 let held = self.panel.held;
-                let (mouse, _, area) = picture::show(ui, picture, &mut self.showing, held);
+                let (mouse, placed, area) = picture::show(ui, picture, &mut self.showing, held);
                 self.area = Some(area);
-                self.take_mouse(&mouse);
+                self.take_mouse(ui, &mouse, &placed);
             }
-            None if trouble.is_none() && self.failed.is_none() => {
-                ui.centered_and_justified(|ui| ui.label("reading the scene …"));
+            None => {
+                if let (Some(doing), None, None) = (self.doing(), &trouble, &self.failed) {
+                    ui.centered_and_justified(|ui| ui.label(format!("{doing} …")));
+                }
             }
-            None => {}
         }
         if let Some(trouble) = &trouble {
             overlay::trouble(ui, rect, trouble, self.picture.is_some());
@@ -319,37 +355,6 @@ impl App {
     }
 }
 
-impl App {
-    /// Asks before changes are lost.
-    fn leave(&mut self, context: &Context) {
-        let lost = self.shared.lock().session.to_be_lost();
-        let name = self.shared.lock().session.name();
-        let asked_to = context.input(|input| input.viewport().close_requested());
-        if asked_to && lost > 0 && self.leaving.is_none() {
-            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.leaving = Some(false);
-        }
-        let close = egui::ViewportCommand::Close;
-        match self.leaving {
-            Some(true) if lost == 0 => context.send_viewport_cmd(close),
-            Some(false) => match overlay::leaving(context, lost, &name) {
-                Some(Leaving::Save) => {
-                    self.leaving = Some(true);
-                    self.save_changes();
-                }
-                Some(Leaving::Lose) => {
-                    self.shared.lock().change(|session| session.discard(None));
-                    self.leaving = None;
-                    context.send_viewport_cmd(close);
-                }
-                Some(Leaving::Stay) => self.leaving = None,
-                None => {}
-            },
-            Some(true) | None => {}
-        }
-    }
-}
-
 impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         self.listen();
@@ -358,11 +363,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        if self.save_as.is_none() && self.leaving.is_none() {
-            for command in keys::pressed(&context) {
-                self.obey(&context, command);
-            }
-        }
+        self.take_keys(&context);
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         if self.side_open {
             let wanted = egui::Panel::right("side")

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use rayon::prelude::*;
 
 use super::latest::{LatestReceiver, LatestSender, latest};
+use super::priority;
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::gpu::device::Gpu;
@@ -29,6 +30,8 @@ pub(super) struct Question {
     pub(super) pixel: Option<[u32; 2]>,
     /// Whether the picture is one that stays for a moment.
     pub(super) still: bool,
+    /// Whether that pixel was clicked, and what it shows is to be selected.
+    pub(super) clicked: bool,
     /// Whether to find out what all pixels show.
     pub(super) objects: bool,
 }
@@ -41,6 +44,11 @@ pub(super) enum Answer {
         number: u64,
         pixel: [u32; 2],
         text: String,
+    },
+    /// Which object a pixel that was clicked shows, if any.
+    Clicked {
+        pixel: [u32; 2],
+        object: Option<usize>,
     },
     /// What all pixels show: numbers of objects from 1, 0 is nothing; rows from the top.
     Objects {
@@ -71,6 +79,7 @@ impl Inspector {
         let thread = std::thread::Builder::new()
             .name("inspect".into())
             .spawn(move || {
+                priority::lower();
                 let mut next = receiver.take();
                 while let Some(question) = next {
                     next = about(&gpu, &settings, &receiver, question, &mut tell);
@@ -118,6 +127,10 @@ fn about(
     let scene = Arc::clone(&question.scene);
     let probe = Probe::new(&scene, settings, Ok(gpu));
     loop {
+        if let (Some(pixel), true) = (question.pixel, question.clicked) {
+            let object = object_at(&scene, settings, pixel);
+            tell(Answer::Clicked { pixel, object });
+        }
         if let Some(pixel) = question.pixel {
             let options = probe::Options {
                 // Its shader is compiled for the scene: not while that changes many times a second.
@@ -162,6 +175,14 @@ fn explain(probe: &Probe<'_>, name: &str, pixel: [u32; 2], options: probe::Optio
         Err(why) => text.push_str(&format!("{why}\n")),
     }
     text
+}
+
+/// The object that a pixel shows, as f64 has it.
+fn object_at(scene: &Scene, settings: &Settings, [x, y]: [u32; 2]) -> Option<usize> {
+    let prepared = Prepared::<f64>::new(scene, settings.view());
+    let ray = camera_getdir(&prepared.camera, f64::from(x), f64::from(y));
+    let hit = find_closest_object(&prepared, &ray).ok().flatten();
+    hit.map(|hit| hit.object)
 }
 
 /// What each pixel of the scene's picture shows, as f64 has it: numbers of objects from 1, 0 is nothing; rows from the

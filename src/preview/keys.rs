@@ -27,6 +27,10 @@ pub(super) enum Command {
     Escape,
     /// The camera's block to the clipboard.
     CopyCamera,
+    /// Takes the last change back.
+    Undo,
+    /// Does it again.
+    Redo,
     /// The changes into the file.
     SaveChanges,
     /// The picture into a file.
@@ -76,6 +80,15 @@ const fn shift(shift: bool, key: Key, command: Command) -> Binding {
     }
 }
 
+const fn with_shift(shift: bool, key: Key, command: Command) -> Binding {
+    Binding {
+        key,
+        command,
+        with_command: true,
+        with_shift: Some(shift),
+    }
+}
+
 /// All keys. Where the same stands twice, Shift tells them apart.
 const BINDINGS: &[Binding] = &[
     shift(false, Key::ArrowLeft, Command::Step([-1.0, 0.0])),
@@ -104,6 +117,9 @@ const BINDINGS: &[Binding] = &[
     key(Key::Escape, Command::Escape),
     with(Key::C, Command::CopyCamera),
     key(Key::C, Command::CopyCamera),
+    with_shift(false, Key::Z, Command::Undo),
+    with_shift(true, Key::Z, Command::Redo),
+    with(Key::Y, Command::Redo),
     with(Key::S, Command::SaveChanges),
     key(Key::P, Command::SavePicture),
     key(Key::F5, Command::Reload),
@@ -127,7 +143,14 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ("right or middle drag", "move the enlarged picture"),
     ("F, 0", "the picture as large as fits"),
     ("1", "pixel for pixel"),
-    ("click", "hold a pixel in the inspector; Esc lets go"),
+    (
+        "click",
+        "select what is hit, hold the pixel in the inspector; Esc lets go",
+    ),
+    (
+        "drag a handle",
+        "move what is selected; with Shift to and fro",
+    ),
     ("I", "the inspector: what `plumb probe` tells of a pixel"),
     ("O", "objects, materials, lights"),
     (
@@ -138,6 +161,8 @@ pub(super) const HELP: &[(&str, &str)] = &[
         "C",
         "copy the camera, as shown, as a block for a scene file",
     ),
+    ("Ctrl+Z", "undo"),
+    ("Ctrl+Shift+Z, Ctrl+Y", "redo"),
     ("Ctrl+S", "write what was changed into the scene file"),
     ("P", "save the picture, certified: .png, .ppm or .exr"),
     ("F5", "read the file and its textures again"),
@@ -146,11 +171,31 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ("Ctrl+Q", "close"),
 ];
 
-/// The commands of the keys that were pressed, unless a field of text has them.
+/// The commands of the keys that were pressed, unless a field of text has them. Those that concern the window as a whole
+/// it has not: see [`leaves_field`].
 pub(super) fn pressed(context: &Context) -> Vec<Command> {
     if context.egui_wants_keyboard_input() {
         return Vec::new();
     }
+    commands(context)
+}
+
+/// The commands for the window as a whole where a field of text has the keys. The field is left, so that what was typed
+/// counts from the next frame on; the commands are for then.
+pub(super) fn leaves_field(context: &Context) -> Vec<Command> {
+    let Some(field) = context.memory(|memory| memory.focused()) else {
+        return Vec::new();
+    };
+    let mut commands = commands(context);
+    commands.retain(|command| matches!(command, Command::SaveChanges | Command::Quit));
+    if !commands.is_empty() {
+        context.memory_mut(|memory| memory.surrender_focus(field));
+        context.request_repaint();
+    }
+    commands
+}
+
+fn commands(context: &Context) -> Vec<Command> {
     context.input(|input| {
         let asked = |event: &Event| match event {
             // Each key event carries the modifiers of its own moment, as several events may come between two frames.
@@ -258,6 +303,41 @@ mod tests {
         harness.run_steps(3);
         assert_eq!(harness.state().0, "v");
         assert!(harness.state().1.is_empty());
+    }
+
+    /// What was typed counts before the window is closed or the file saved.
+    #[test]
+    fn keys_for_the_whole_window_leave_a_field_of_text() {
+        let mut harness = Harness::new_ui_state(
+            |ui, (number, commands): &mut (f64, Vec<(f64, Command)>)| {
+                let left = leaves_field(ui.ctx());
+                let seen = *number;
+                commands.extend(left.into_iter().map(|command| (seen, command)));
+                let label = ui.label("number");
+                let field = eframe::egui::DragValue::new(number).update_while_editing(false);
+                ui.add(field).labelled_by(label.id);
+            },
+            (4.0, Vec::new()),
+        );
+        harness.run_steps(3);
+        let node = egui_kittest::kittest::Queryable::get_by_role(
+            &harness,
+            eframe::egui::accesskit::Role::SpinButton,
+        );
+        node.click();
+        harness.run_steps(4);
+        harness.event(Event::Text("7".into()));
+        harness.run_steps(2);
+        // A key of the field's own is none of the window's.
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::Z);
+        harness.event(Event::Text("7".into()));
+        harness.run_steps(3);
+        assert_eq!(harness.state().1, []);
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::Q);
+        harness.run_steps(4);
+        assert_eq!(harness.state().1, [(4.0, Command::Quit)]);
+        assert!(harness.state().0 > 4.0, "{}", harness.state().0);
+        assert!(harness.ctx.memory(|memory| memory.focused()).is_none());
     }
 
     #[test]

@@ -11,19 +11,26 @@
 
 mod adaptive_resolution;
 mod app;
+mod canvases;
+mod handles;
 mod inspect;
 mod inspector;
 mod keys;
 mod latest;
 mod overlay;
 mod picture;
+mod priority;
+mod progress;
+mod properties;
 mod save;
 mod screen;
+mod selection;
 mod session;
 mod shared_session;
 mod shell;
 mod side;
 mod status;
+mod undo;
 mod values;
 mod viewport;
 mod watch;
@@ -35,7 +42,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui;
 use eframe::egui_wgpu;
 
-use crate::gpu::{GpuError, adapters};
+use crate::gpu::GpuError;
+use crate::gpu::adapters::{self, Opened};
+use crate::gpu::device::Gpu;
 use crate::settings::Settings;
 use app::App;
 use shell::Shell;
@@ -87,16 +96,15 @@ pub enum PreviewError {
 /// # Errors
 /// Any [`PreviewError`].
 pub fn run(options: Options) -> Result<(), PreviewError> {
-    let opened = adapters::open_for_window(options.settings.adapter.as_deref());
-    let opened = opened.map_err(PreviewError::NoGpu)?;
-    let gpu = Arc::new(opened.gpu);
+    let (gpu, drawn_with) = open(options.settings.adapter.as_deref())?;
+    let window = drawn_with.gpu;
     let setup = egui_wgpu::WgpuSetupExisting {
-        instance: opened.instance,
-        adapter: opened.adapter,
-        device: gpu.device.clone(),
-        queue: gpu.queue.clone(),
+        instance: drawn_with.instance,
+        adapter: drawn_with.adapter,
+        device: window.device.clone(),
+        queue: window.queue.clone(),
     };
-    let status = Arc::clone(&gpu);
+    let status = Arc::clone(&window);
     let defaults = egui_wgpu::WgpuConfiguration::default();
     let on_surface_status = Arc::clone(&defaults.on_surface_status);
     let native = eframe::NativeOptions {
@@ -129,12 +137,15 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
         .map_err(no_display)?;
     let started = Arc::new(Mutex::new(Err(String::from("no window was made"))));
     let start = Arc::clone(&started);
-    let device = Arc::clone(&gpu);
+    let devices = Devices {
+        gpu: Arc::clone(&gpu),
+        window: Arc::clone(&window),
+    };
     let inner = eframe::create_native(
         "plumb",
         native,
         Box::new(move |context| {
-            let app = App::new(context, device, options);
+            let app = App::new(context, devices, options);
             let mut start = start.lock().unwrap_or_else(PoisonError::into_inner);
             match app {
                 Ok(app) => {
@@ -151,14 +162,45 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     );
     let mut shell = Shell {
         inner,
-        gpu: Arc::clone(&gpu),
+        window: Arc::clone(&window),
         resized: None,
     };
     events.run_app(&mut shell).map_err(no_display)?;
     drop(shell);
     let started = started.lock().unwrap_or_else(PoisonError::into_inner);
     started.clone().map_err(PreviewError::Window)?;
-    Ok(gpu.check()?)
+    gpu.check()?;
+    Ok(window.check()?)
+}
+
+/// The devices of a preview.
+struct Devices {
+    /// Renders.
+    gpu: Arc<Gpu>,
+    /// Draws the window; perhaps the same.
+    window: Arc<Gpu>,
+}
+
+/// The device that renders, and that which draws the window.
+fn open(wanted: Option<&str>) -> Result<(Arc<Gpu>, Opened), PreviewError> {
+    let window = |why: std::io::Error| PreviewError::Window(why.to_string());
+    std::thread::scope(|scope| {
+        // A driver that computes on the CPU starts its threads here: they are to give way to the window.
+        let renderer = std::thread::Builder::new()
+            .name("open".into())
+            .spawn_scoped(scope, || {
+                priority::lower();
+                adapters::open_for_window(wanted)
+            })
+            .map_err(window)?
+            .join();
+        let renderer = match renderer {
+            Ok(renderer) => renderer.map_err(PreviewError::NoGpu)?,
+            Err(panic) => std::panic::resume_unwind(panic),
+        };
+        let window = adapters::open_beside(&renderer, wanted).map_err(PreviewError::NoGpu)?;
+        Ok((renderer.gpu, window))
+    })
 }
 
 /// What a library says without where in its source it says so: `os error at /…/mod.rs:7: no display` is `no display`.

@@ -79,30 +79,28 @@ pub(super) enum Leaving {
 /// Asks what to do with so many changes; none as long as there is no answer.
 pub(super) fn leaving(context: &Context, changes: usize, name: &str) -> Option<Leaving> {
     let mut chosen = None;
-    egui::Window::new("Close the window?")
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(context, |ui| {
-            ui.label(match changes {
-                1 => format!("A change is not in {name}."),
-                changes => format!("{changes} changes are not in {name}."),
-            });
-            ui.horizontal(|ui| {
-                for (text, choice) in [
-                    ("Save and close", Leaving::Save),
-                    ("Close without", Leaving::Lose),
-                    ("Stay", Leaving::Stay),
-                ] {
-                    if ui.button(text).clicked() {
-                        chosen = Some(choice);
-                    }
+    // Nothing else can be done meanwhile.
+    egui::Modal::new(egui::Id::unique("close")).show(context, |ui| {
+        ui.heading("Close the window?");
+        ui.label(match changes {
+            1 => format!("A change is not in {name}."),
+            changes => format!("{changes} changes are not in {name}."),
+        });
+        ui.horizontal(|ui| {
+            for (text, choice) in [
+                ("Save and close", Leaving::Save),
+                ("Close without", Leaving::Lose),
+                ("Stay", Leaving::Stay),
+            ] {
+                if ui.button(text).clicked() {
+                    chosen = Some(choice);
                 }
-            });
-            if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-                chosen = Some(Leaving::Stay);
             }
         });
+        if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+            chosen = Some(Leaving::Stay);
+        }
+    });
     chosen
 }
 

@@ -23,6 +23,12 @@ pub(super) struct Mouse {
     pub(super) over: Option<[u32; 2]>,
     /// Whether it was clicked.
     pub(super) clicked: bool,
+    /// Where the mouse is: columns from the left and rows from the top, with fractions, also beside the picture.
+    pub(super) at: Option<[f64; 2]>,
+    /// Where the button went down that begins to drag now, likewise.
+    pub(super) grabs: Option<[f64; 2]>,
+    /// Whether the button that drags the viewpoint is still down.
+    pub(super) dragging: bool,
 }
 
 /// How the picture is shown.
@@ -53,6 +59,17 @@ pub(super) fn show(
     let in_pixels = |at: Pos2| [f64::from(at.x) * scale, f64::from(at.y) * scale];
     let over = response.hover_pos().map(in_pixels);
     let mut mouse = Mouse::default();
+    let placed = showing.viewport.place(area, size);
+    let (origin, now) = ui.input(|input| {
+        let pointer = &input.pointer;
+        (pointer.press_origin(), pointer.interact_pos())
+    });
+    let in_picture = |at: Pos2| placed.at(in_pixels(at));
+    mouse.at = now.map(in_picture);
+    if response.drag_started_by(PointerButton::Primary) {
+        mouse.grabs = origin.map(in_picture);
+    }
+    mouse.dragging = response.dragged_by(PointerButton::Primary);
     let (delta, button) = dragged(ui, &response, &mut showing.dragging);
     if delta != egui::Vec2::ZERO {
         let by = [f64::from(delta.x) * scale, f64::from(delta.y) * scale];

@@ -74,7 +74,8 @@ impl SaveTask {
         let metadata = Metadata::of(self.software, &name.to_string_lossy(), scene, settings);
         let target = Target::Path(self.to.clone());
         let mut output = Output::open(target, format, width, height, metadata)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| error.to_string())?
+            .hashing();
         let stop = || self.stop.load(Ordering::Relaxed);
         let live = Live {
             stop: &stop,
@@ -84,7 +85,7 @@ impl SaveTask {
         match rendered {
             Ok(_) => {
                 let finished = output.finish().map_err(|error| error.to_string())?;
-                Ok(Some(finished.sha256))
+                Ok(Some(finished.sha256.unwrap_or_default()))
             }
             Err(render::Error::Revoked(_)) if settings.backend == Backend::Auto => Ok(None),
             Err(error) => Err(error.to_string()),

@@ -1,7 +1,8 @@
 //! Draws a picture that is on the GPU into the window, byte by byte, without bringing it to the host.
 //!
 //! A callback of egui's: the worker's [`Canvas`] goes in as it is, and what decided each pixel or which object it shows
-//! is painted over it.
+//! is painted over it. That is drawn into a texture once, and each frame of the window copies the texture: frames are
+//! many, one for each motion of the mouse, and a driver that computes on the CPU took 20 ms for them.
 
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ struct ScreenUniforms {
     zoom: f32,
     times: u32,
     verdicts: u32,
-    linear: u32,
+    nothing: u32,
 }
 
 /// What each pixel of a picture sees, on the GPU.
@@ -48,7 +49,7 @@ pub(super) struct Outlined {
 }
 
 /// A picture to be drawn.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Draw {
     /// The picture.
     pub(super) canvas: Arc<Canvas>,
@@ -65,11 +66,49 @@ pub(super) struct Draw {
 /// What all pictures are drawn with; kept by egui's renderer.
 struct Screen {
     pipeline: wgpu::RenderPipeline,
+    blit: wgpu::RenderPipeline,
     view: wgpu::Buffer,
     /// In place of buffers that are not there.
     nothing: wgpu::Buffer,
-    linear: bool,
-    bound: Option<wgpu::BindGroup>,
+    drawn: Option<Drawn>,
+}
+
+/// A picture that was drawn into a texture as large as the window.
+struct Drawn {
+    /// What it shows. A canvas that is held here is not used for another picture.
+    draw: Draw,
+    window: [u32; 2],
+    texture: wgpu::Texture,
+    bound: wgpu::BindGroup,
+}
+
+/// What is drawn is bytes, whatever the window's surface is made of.
+const DRAWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+impl Draw {
+    /// Whether it would look the same.
+    fn is_as(&self, other: &Self) -> bool {
+        let outlined = match (&self.outlined, &other.outlined) {
+            (None, None) => true,
+            (Some(a), Some(b)) => {
+                Arc::ptr_eq(&a.seen, &b.seen) && Arc::ptr_eq(&a.chosen, &b.chosen)
+            }
+            _ => false,
+        };
+        outlined
+            && Arc::ptr_eq(&self.canvas, &other.canvas)
+            && (self.size, self.placed, self.verdicts) == (other.size, other.placed, other.verdicts)
+    }
+
+    /// The part of the window that the picture covers: left, top, width, height.
+    fn covers(&self, window: [u32; 2]) -> [u32; 4] {
+        let end = |i: usize| {
+            let length = (f64::from(self.size[i]) * self.placed.zoom).ceil();
+            (f64::from(self.placed.origin[i]) + length).clamp(0.0, f64::from(window[i])) as u32
+        };
+        let start = |i: usize| (self.placed.origin[i].max(0) as u32).min(end(i));
+        [start(0), start(1), end(0) - start(0), end(1) - start(1)]
+    }
 }
 
 /// The shader: what is said above, and the colours of verdicts, those of `plumb render --verdicts`.
@@ -96,15 +135,20 @@ pub(super) fn wgsl() -> String {
     wgsl
 }
 
-/// Compiles the shader for the window, and gives it to egui's renderer.
-pub(super) fn install(state: &RenderState) {
-    let device = &state.device;
+/// A pipeline without vertices that draws a triangle over everything.
+fn pipeline(
+    device: &wgpu::Device,
+    label: &'static str,
+    wgsl: String,
+    entry: &'static str,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("screen"),
-        source: wgpu::ShaderSource::Wgsl(wgsl().into()),
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
     });
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("screen"),
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,
@@ -117,17 +161,22 @@ pub(super) fn install(state: &RenderState) {
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("color"),
+            entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
-                format: state.target_format,
+                format,
                 blend: None,
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),
         multiview_mask: None,
         cache: None,
-    });
+    })
+}
+
+/// Compiles the shaders for the window, and gives them to egui's renderer.
+pub(super) fn install(state: &RenderState) {
+    let device = &state.device;
     let view = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("view"),
         size: size_of::<ScreenUniforms>() as u64,
@@ -139,45 +188,49 @@ pub(super) fn install(state: &RenderState) {
         contents: &[0; 4],
         usage: wgpu::BufferUsages::STORAGE,
     });
+    let entry = if state.target_format.is_srgb() {
+        "linear"
+    } else {
+        "bytes"
+    };
+    let blit = String::from(include_str!("blit.wgsl"));
     state.renderer.write().callback_resources.insert(Screen {
-        pipeline,
+        pipeline: pipeline(device, "screen", wgsl(), "color", DRAWN),
+        blit: pipeline(device, "blit", blit, entry, state.target_format),
         view,
         nothing,
-        linear: state.target_format.is_srgb(),
-        bound: None,
+        drawn: None,
     });
 }
 
-impl CallbackTrait for Draw {
-    fn prepare(
+impl Screen {
+    /// Draws the picture into a texture.
+    fn draw(
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        _screen: &ScreenDescriptor,
-        _encoder: &mut wgpu::CommandEncoder,
-        resources: &mut CallbackResources,
-    ) -> Vec<wgpu::CommandBuffer> {
-        let Some(screen) = resources.get_mut::<Screen>() else {
-            return Vec::new();
-        };
+        encoder: &mut wgpu::CommandEncoder,
+        draw: &Draw,
+        texture: &wgpu::Texture,
+    ) {
         let view = ScreenUniforms {
-            origin: self.placed.origin,
-            size: self.size,
-            canvas: self.canvas.size,
-            marked: self
+            origin: draw.placed.origin,
+            size: draw.size,
+            canvas: draw.canvas.size,
+            marked: draw
                 .outlined
                 .as_ref()
                 .map_or([0; 2], |marks| marks.seen.size),
-            zoom: self.placed.zoom as f32,
-            times: self.placed.times(),
-            verdicts: u32::from(self.verdicts),
-            linear: u32::from(screen.linear),
+            zoom: draw.placed.zoom as f32,
+            times: draw.placed.times(),
+            verdicts: u32::from(draw.verdicts),
+            nothing: 0,
         };
-        queue.write_buffer(&screen.view, 0, bytemuck::bytes_of(&view));
-        let outlined = self.outlined.as_ref();
-        let seen = outlined.map_or(&screen.nothing, |outlined| &outlined.seen.objects);
-        let chosen = outlined.map_or(&screen.nothing, |outlined| &*outlined.chosen);
-        let buffers = [&screen.view, &self.canvas.pixels, seen, chosen];
+        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        let outlined = draw.outlined.as_ref();
+        let seen = outlined.map_or(&self.nothing, |outlined| &outlined.seen.objects);
+        let chosen = outlined.map_or(&self.nothing, |outlined| &*outlined.chosen);
+        let buffers = [&self.view, &draw.canvas.pixels, seen, chosen];
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -185,11 +238,90 @@ impl CallbackTrait for Draw {
                 resource: buffer.as_entire_binding(),
             })
             .collect();
-        screen.bound = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("screen"),
-            layout: &screen.pipeline.get_bind_group_layout(0),
+            layout: &self.pipeline.get_bind_group_layout(0),
             entries: &entries,
-        }));
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("screen"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &texture.create_view(&wgpu::TextureViewDescriptor::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        let [left, top, width, height] = draw.covers([texture.width(), texture.height()]);
+        pass.set_scissor_rect(left, top, width, height);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &bound, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// A texture as large as the window, and how it is read.
+    fn texture(&self, device: &wgpu::Device, window: [u32; 2]) -> (wgpu::Texture, wgpu::BindGroup) {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("drawn picture"),
+            size: wgpu::Extent3d {
+                width: window[0],
+                height: window[1],
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: DRAWN,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("drawn picture"),
+            layout: &self.blit.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&view),
+            }],
+        });
+        (texture, bound)
+    }
+}
+
+impl CallbackTrait for Draw {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        descriptor: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        let Some(screen) = resources.get_mut::<Screen>() else {
+            return Vec::new();
+        };
+        let window = descriptor.size_in_pixels;
+        let (texture, bound) = match screen.drawn.take() {
+            Some(drawn) if drawn.window == window => {
+                if drawn.draw.is_as(self) {
+                    screen.drawn = Some(drawn);
+                    return Vec::new();
+                }
+                (drawn.texture, drawn.bound)
+            }
+            _ => screen.texture(device, window),
+        };
+        screen.draw(device, queue, encoder, self, &texture);
+        screen.drawn = Some(Drawn {
+            draw: self.clone(),
+            window,
+            texture,
+            bound,
+        });
         Vec::new()
     }
 
@@ -200,10 +332,10 @@ impl CallbackTrait for Draw {
         resources: &CallbackResources,
     ) {
         if let Some(screen) = resources.get::<Screen>()
-            && let Some(bound) = &screen.bound
+            && let Some(drawn) = &screen.drawn
         {
-            pass.set_pipeline(&screen.pipeline);
-            pass.set_bind_group(0, bound, &[]);
+            pass.set_pipeline(&screen.blit);
+            pass.set_bind_group(0, &drawn.bound, &[]);
             pass.draw(0..3, 0..1);
         }
     }
@@ -239,6 +371,8 @@ mod tests {
             .iter()
             .map(|member| member.offset as usize)
             .collect();
+        let blit = naga::front::wgsl::parse_str(include_str!("blit.wgsl")).unwrap();
+        validator.validate(&blit).unwrap();
         assert_eq!(*span as usize, size_of::<ScreenUniforms>());
         assert_eq!(
             offsets,
@@ -250,7 +384,7 @@ mod tests {
                 std::mem::offset_of!(ScreenUniforms, zoom),
                 std::mem::offset_of!(ScreenUniforms, times),
                 std::mem::offset_of!(ScreenUniforms, verdicts),
-                std::mem::offset_of!(ScreenUniforms, linear),
+                std::mem::offset_of!(ScreenUniforms, nothing),
             ]
         );
     }

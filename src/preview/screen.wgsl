@@ -12,8 +12,7 @@ struct ScreenUniforms {
     times: u32,
     // Whether to paint what decided each pixel.
     verdicts: u32,
-    // Whether what is written is light, and not a byte of a picture.
-    linear: u32,
+    nothing: u32,
 }
 
 @group(0) @binding(0) var<uniform> view: ScreenUniforms;
@@ -26,7 +25,7 @@ struct ScreenUniforms {
 
 @vertex
 fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    // A triangle larger than the window.
+    // A triangle larger than what is drawn into.
     return vec4f(vec2f(f32(i & 1u), f32(i >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
 
@@ -60,10 +59,6 @@ fn is_chosen(at: vec2i) -> bool {
     return (chosen[object / 32u] >> (object % 32u) & 1u) != 0u;
 }
 
-fn light(byte: vec3f) -> vec3f {
-    return select(pow((byte + 0.055) / 1.055, vec3f(2.4)), byte / 12.92, byte <= vec3f(0.04045));
-}
-
 @fragment
 fn color(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = vec2i(position.xy);
@@ -82,6 +77,5 @@ fn color(@builtin(position) position: vec4f) -> @location(0) vec4f {
             | inside != is_chosen(at + vec2i(0, 2)) | inside != is_chosen(at - vec2i(0, 2));
         bytes = select(bytes, vec3f(255.0, 140.0, 0.0), border);
     }
-    let color = bytes / 255.0;
-    return vec4f(select(color, light(color), view.linear != 0u), 1.0);
+    return vec4f(bytes / 255.0, 1.0);
 }

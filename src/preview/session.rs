@@ -2,68 +2,20 @@
 //!
 //! Takes what the watcher tells and what the user does; says what is to be rendered, and writes changes into the file.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+mod report;
+mod saving;
+mod version;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::watch;
-use crate::edit::{Changes, Target, Value};
-use crate::image::{Document, Target as File};
-use crate::scene::{self, EntityId, Object, Places, Scene, Surface};
+pub(super) use saving::Saving;
+pub(super) use version::{News, Parsed, Version};
 
-/// A version of the file, read and parsed.
-#[derive(Debug)]
-pub(super) struct Version {
-    /// Its text.
-    pub(super) text: Vec<u8>,
-    /// The scene, or its mistakes as they are printed.
-    pub(super) parsed: Result<Parsed, String>,
-}
-
-/// A version of the file without mistakes.
-#[derive(Debug, Clone)]
-pub(super) struct Parsed {
-    /// The scene as the file has it.
-    pub(super) scene: Arc<Scene>,
-    /// Where everything stands in the text.
-    pub(super) places: Arc<Places>,
-}
-
-impl Version {
-    /// Parses a text. Takes as long as that takes: not for the window's thread.
-    pub(super) fn read(path: &Path, text: Vec<u8>) -> Self {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let parsed = scene::parse(&path.display().to_string(), &text, folder)
-            .map(|scene| Parsed {
-                scene: Arc::new(scene),
-                places: Arc::new(scene::places(&text)),
-            })
-            .map_err(|mistakes| mistakes.render(false));
-        Self { text, parsed }
-    }
-}
-
-/// What is known of the file.
-#[derive(Debug)]
-pub(super) enum News {
-    /// It was written.
-    Version(Version),
-    /// It is not there any more.
-    Gone,
-    /// It cannot be read.
-    Unreadable(String),
-}
-
-impl News {
-    /// From what the watcher tells.
-    pub(super) fn read(path: &Path, news: watch::News) -> Self {
-        match news {
-            watch::News::Text(text) => Self::Version(Version::read(path, text)),
-            watch::News::Gone => Self::Gone,
-            watch::News::Unreadable(why) => Self::Unreadable(why),
-        }
-    }
-}
+use super::undo::{self, Direction, History, Step};
+use crate::edit::{Changes, Refused, Target, Value};
+use crate::scene::{self, EntityId, Object, Scene, Surface};
+use version::Origin;
 
 /// Where something stands in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -123,6 +75,9 @@ pub(super) enum Trouble {
 }
 
 /// The file, its last good version, and what is changed on top of that.
+///
+/// Changes lie on top of the text as it was when it last came from elsewhere, its origin; what is saved is changes that
+/// the file has too. So that text is what is saved again once all changes are undone, byte for byte.
 #[derive(Debug)]
 pub(super) struct Session {
     /// The file.
@@ -131,10 +86,18 @@ pub(super) struct Session {
     size: Option<[u32; 2]>,
     /// The last version without mistakes, and its text.
     good: Option<(Parsed, Arc<Vec<u8>>)>,
-    /// What is rendered: that version, of the size that was asked for.
-    sized: Option<Arc<Scene>>,
-    /// What is changed on top of it.
+    /// What changes are on top of: that version, or the one that it was made from by saving them.
+    origin: Option<Origin>,
+    /// What is changed on top of the origin.
     changes: Changes,
+    /// What of it the file has.
+    saved: Changes,
+    /// What is being written into the file: that text, and the changes in it.
+    writing: Option<(Arc<Vec<u8>>, Changes)>,
+    /// What was changed before, and what was undone.
+    history: History,
+    /// Raised when entities may have other indices than before.
+    pub(super) generation: u64,
     /// What is wrong with the file now.
     pub(super) trouble: Option<Trouble>,
     /// What became of changes and saving, for the user to read.
@@ -148,8 +111,12 @@ impl Session {
             path,
             size,
             good: None,
-            sized: None,
-            changes: Changes::default(),
+            origin: None,
+            changes: Changes::new(),
+            saved: Changes::new(),
+            writing: None,
+            history: History::default(),
+            generation: 0,
             trouble: None,
             said: Vec::new(),
         }
@@ -161,7 +128,7 @@ impl Session {
         name.to_string_lossy().into_owned()
     }
 
-    /// The last good version.
+    /// The file's last version without mistakes.
     pub(super) fn good(&self) -> Option<&Parsed> {
         self.good.as_ref().map(|(parsed, _)| parsed)
     }
@@ -178,12 +145,22 @@ impl Session {
 
     /// What is to be rendered: a scene, and what is changed on top of it.
     pub(super) fn wanted(&self) -> Option<(&Arc<Scene>, &Changes)> {
-        self.sized.as_ref().map(|scene| (scene, &self.changes))
+        self.origin
+            .as_ref()
+            .map(|origin| (&origin.sized, &self.changes))
     }
 
-    /// What is changed on top of the file.
-    pub(super) fn changes(&self) -> &Changes {
-        &self.changes
+    /// What the file does not have.
+    pub(super) fn unsaved(&self) -> Changes {
+        match &self.origin {
+            Some(origin) => self.changes.beyond(&self.saved, &origin.scene),
+            None => Changes::new(),
+        }
+    }
+
+    /// Whether the file has another value there.
+    pub(super) fn is_changed(&self, target: Target) -> bool {
+        self.value(target) != self.value_in_file(target)
     }
 
     /// Something happened to the file. Whether there is something else to be rendered.
@@ -208,64 +185,148 @@ impl Session {
 
     /// Takes a version over. Whether there is something else to be rendered.
     fn take(&mut self, parsed: Parsed, text: Vec<u8>) -> bool {
-        let mut same = false;
-        let changed_before = self.changes.clone();
-        if let Some((old, _)) = &self.good {
-            same = old.scene == parsed.scene;
-            let dropped = self.changes.rebase(&old.scene, &parsed.scene);
-            self.said.extend(dropped.iter().map(ToString::to_string));
+        let writing = self.writing.take();
+        let (Some((old, old_text)), Some(origin)) = (&self.good, &mut self.origin) else {
+            let text = Arc::new(text);
+            let scene = Arc::clone(&parsed.scene);
+            self.origin = Some(Origin::new(scene, Arc::clone(&text), self.size));
+            self.good = Some((parsed, text));
+            self.report_file("file");
+            return true;
+        };
+        if let Some((_, saved)) = writing.filter(|(written, _)| **written == text) {
+            // This is what was saved here, on top of the same origin.
+            let is_new = origin.set_textures(&parsed.scene);
+            self.saved = saved;
+            self.good = Some((parsed, Arc::new(text)));
+            self.report_file("saved");
+            return is_new;
         }
-        same &= changed_before == self.changes;
-        if !same {
-            let mut sized = Arc::clone(&parsed.scene);
-            if let Some(size) = self.size
-                && size != sized.camera.pixeldim
-            {
-                Arc::make_mut(&mut sized).camera.pixeldim = size;
-            }
-            self.sized = Some(sized);
+        if **old_text == text {
+            let is_new = origin.set_textures(&parsed.scene);
+            self.good = Some((parsed, Arc::new(text)));
+            return is_new;
         }
-        self.good = Some((parsed, Arc::new(text)));
+        let unsaved = self.changes.beyond(&self.saved, &origin.scene);
+        let scenes = [&*old.scene, &*parsed.scene];
+        let (mut kept, mut lost) = (unsaved.clone(), unsaved.clone());
+        let dropped = kept.rebase(scenes[0], scenes[1]);
+        self.said.extend(dropped.iter().map(ToString::to_string));
+        Changes::rebase_earlier([&mut lost].into_iter(), scenes[0], scenes[1]);
+        self.history.rebase(&self.saved, &origin.scene, scenes);
+        if lost != kept {
+            // What the file took away can be brought back.
+            self.history.record(lost, Step::Alone);
+        }
+        let same = old.scene == parsed.scene && unsaved == kept;
+        let text = Arc::new(text);
+        let scene = Arc::clone(&parsed.scene);
+        *origin = Origin::new(scene, Arc::clone(&text), self.size);
+        self.good = Some((parsed, text));
+        (self.changes, self.saved) = (kept, Changes::new());
+        self.generation += 1;
+        self.report_file("file");
         !same
     }
 
     /// How many changes there are besides the viewpoint, which one changes by looking around.
     pub(super) fn to_be_lost(&self) -> usize {
-        let looks = self.changes.get(Target::Viewpoint).is_some();
-        self.changes.len() - usize::from(looks)
+        let unsaved = self.unsaved();
+        let looks = unsaved.get(Target::VIEWPOINT).is_some();
+        unsaved.len() - usize::from(looks)
     }
 
     /// A value as it is shown: the change, else what the file has.
     pub(super) fn value(&self, target: Target) -> Option<Value> {
-        let (scene, changes) = self.wanted()?;
-        changes.get(target).or_else(|| target.value_in(scene))
+        let origin = self.origin.as_ref()?;
+        let change = self.changes.get(target);
+        change.or_else(|| target.value_in(&origin.scene))
+    }
+
+    /// A value as the file has it.
+    pub(super) fn value_in_file(&self, target: Target) -> Option<Value> {
+        let origin = self.origin.as_ref()?;
+        let saved = self.saved.get(target);
+        saved.or_else(|| target.value_in(&origin.scene))
+    }
+
+    /// Why a value cannot be changed although the language lets it.
+    pub(super) fn is_fixed(&self, target: Target) -> Option<&'static str> {
+        let is_size = target == Target::new(EntityId::Camera, "pixeldim");
+        (is_size && self.size.is_some()).then_some("--size counts, and not the file's pixeldim")
     }
 
     /// Changes a value on top of the file; to what the file has is no change. What the scene language does not allow is
     /// said, and changes nothing. Whether there is something else to be rendered.
-    pub(super) fn set(&mut self, target: Target, value: Value) -> bool {
-        let Some(scene) = &self.sized else {
+    pub(super) fn set(&mut self, target: Target, value: Value, step: Step) -> bool {
+        if let Some(why) = self.is_fixed(target) {
+            self.said.push(why.into());
             return false;
-        };
-        let before = self.changes.get(target);
-        if target.value_in(scene) == Some(value) {
-            self.changes.remove(target);
-        } else if let Err(refused) = self.changes.set(target, value) {
-            self.said.push(refused.to_string());
         }
-        before != self.changes.get(target)
+        self.change(step, |changes, scene| {
+            if target.value_in(scene) == Some(value) {
+                changes.reset(scene, target).map(|_| ())
+            } else {
+                changes.set(scene, target, value)
+            }
+        })
     }
 
     /// Back to what the file has, of this or of everything. Whether there is something else to be rendered.
     pub(super) fn discard(&mut self, target: Option<Target>) -> bool {
-        let before = self.changes.clone();
-        match target {
-            Some(target) => {
-                self.changes.remove(target);
-            }
-            None => self.changes.clear(),
+        let Some(target) = target else {
+            let saved = self.saved.clone();
+            return self.change(Step::Alone, |changes, _| {
+                *changes = saved;
+                Ok(())
+            });
+        };
+        match self.value_in_file(target) {
+            Some(value) => self.set(target, value, Step::Alone),
+            None => false,
         }
-        before != self.changes
+    }
+
+    /// Changes something, as a step that can be undone, or a part of one.
+    fn change(
+        &mut self,
+        step: Step,
+        change: impl FnOnce(&mut Changes, &Scene) -> Result<(), Refused>,
+    ) -> bool {
+        let Some(origin) = &self.origin else {
+            return false;
+        };
+        let before = self.changes.clone();
+        if let Err(refused) = change(&mut self.changes, &origin.scene) {
+            self.said.push(refused.to_string());
+        }
+        let is_new = before != self.changes;
+        if is_new {
+            let continues = self.history.record(before, step);
+            self.report(if continues { "changed on" } else { "changed" });
+        }
+        is_new
+    }
+
+    /// Takes the last step back, or forward again. Whether there is something else to be rendered.
+    pub(super) fn step_back(&mut self, direction: Direction) -> bool {
+        let Some(changes) = self.history.go(direction, &self.changes) else {
+            self.said.push(direction.nothing().into());
+            return false;
+        };
+        let before = std::mem::replace(&mut self.changes, changes);
+        if let Some(origin) = &self.origin {
+            let differs = before.beyond(&self.changes, &origin.scene);
+            let what = undo::described(&differs, &origin.scene);
+            self.said.push(format!("{} {what}", direction.done()));
+        }
+        self.report(direction.done());
+        true
+    }
+
+    /// Whether there is something to be taken back, or forward again.
+    pub(super) fn can_step(&self, direction: Direction) -> bool {
+        self.history.can_go(direction, &self.changes)
     }
 
     /// What it takes to write all changes into the file.
@@ -281,58 +342,38 @@ impl Session {
             Some(Trouble::Gone) => return Err("not saved: the file is gone".into()),
             Some(Trouble::Unreadable(why)) => return Err(format!("not saved: {why}")),
         }
-        let Some((_, text)) = &self.good else {
+        let (Some((_, text)), Some(origin)) = (&self.good, &self.origin) else {
             return Err("not saved: there is no scene yet".into());
         };
-        if self.changes.is_empty() {
+        let count = self.unsaved().len();
+        if count == 0 {
             return Err("nothing is changed".into());
         }
         Ok(Saving {
             path: self.path.clone(),
-            text: Arc::clone(text),
+            file: Arc::clone(text),
+            origin: Arc::clone(&origin.text),
             changes: self.changes.clone(),
+            count,
         })
     }
-}
 
-/// Changes on their way into the file. Takes as long as reading it: not for the window's thread.
-#[derive(Debug)]
-pub(super) struct Saving {
-    path: PathBuf,
-    text: Arc<Vec<u8>>,
-    changes: Changes,
-}
+    /// This text is about to be written into the file, with these changes.
+    pub(super) fn expect(&mut self, text: Arc<Vec<u8>>, changes: Changes) {
+        self.writing = Some((text, changes));
+    }
 
-impl Saving {
-    /// Writes the changes into the file, touching nothing else in it. A file that was changed meanwhile is not touched.
-    /// What the file is now, and what was done, in a sentence.
-    ///
-    /// # Errors
-    /// Why not, in a sentence; then the file is as it was.
-    pub(super) fn run(self) -> Result<(Version, String), String> {
-        let Self {
-            path,
-            text,
-            changes,
-        } = self;
-        let now = fs::read(&path).map_err(|error| format!("not saved: {error}"))?;
-        if now != *text {
-            return Err("not saved: the file has just been written; try again".into());
+    /// What was expected is in the file, or will not be. If the file was heard of meanwhile, that counts.
+    pub(super) fn finish_saving(&mut self, version: Option<Version>) -> bool {
+        match (version, &self.writing) {
+            (Some(version), Some((text, _))) if **text == version.text => {
+                self.news(News::Version(version))
+            }
+            _ => {
+                self.writing = None;
+                false
+            }
         }
-        let written = changes
-            .write(&text)
-            .map_err(|error| format!("not saved: {error}"))?;
-        let target = File::Path(path.clone());
-        Document::open(&target)
-            .and_then(|document| document.write(&written))
-            .map_err(|error| format!("not saved: {error}"))?;
-        let name = path.file_name().unwrap_or(path.as_os_str());
-        let name = name.to_string_lossy();
-        let said = match changes.len() {
-            1 => format!("saved a change into {name}"),
-            count => format!("saved {count} changes into {name}"),
-        };
-        Ok((Version::read(&path, written), said))
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use super::latest::LatestSender;
-use super::session::{News, Session};
+use super::session::{News, Saving, Session};
 use super::worker::Wish;
 
 /// A session under a lock, which nobody holds for long.
@@ -50,6 +50,22 @@ impl SharedSession {
             state.wish();
         }
         changed
+    }
+}
+
+impl SharedSession {
+    /// Writes changes into the file. What was done, or why not, in a sentence.
+    ///
+    /// # Errors
+    /// Why not.
+    pub(super) fn save(&self, saving: Saving) -> Result<String, String> {
+        let saved = saving.run(|text, changes| self.lock().session.expect(text, changes));
+        let (version, told) = match saved {
+            Ok((version, said)) => (Some(version), Ok(said)),
+            Err(why) => (None, Err(why)),
+        };
+        self.lock().change(|session| session.finish_saving(version));
+        told
     }
 }
 

@@ -12,10 +12,11 @@ use winit::window::WindowId;
 
 use crate::gpu::device::Gpu;
 
-/// eframe's window, with what it does not know: that others use its device.
+/// eframe's window, with what it does not know: that others may use its device.
 pub(super) struct Shell<'a> {
     pub(super) inner: EframeWinitApplication<'a>,
-    pub(super) gpu: Arc<Gpu>,
+    /// The device that draws the window.
+    pub(super) window: Arc<Gpu>,
     /// When the size changed last.
     pub(super) resized: Option<Instant>,
 }
@@ -27,7 +28,7 @@ impl Shell<'_> {
     /// Lets the others go on: not only if an event told that the size changes, since a surface that turns out to be
     /// outdated while it is drawn keeps them away too.
     fn done(&self) {
-        self.gpu.submit_gate.open();
+        self.window.submit_gate.open();
     }
 }
 
@@ -44,7 +45,7 @@ impl ApplicationHandler<UserEvent> for Shell<'_> {
         let settles = matches!(event, WindowEvent::RedrawRequested)
             && self.resized.is_some_and(|when| when.elapsed() < SETTLES);
         if resizes || settles {
-            self.gpu.submit_gate.close();
+            self.window.submit_gate.close();
         }
         self.inner.window_event(active, window, event);
         self.done();

@@ -4,16 +4,21 @@
 
 use eframe::egui::{self, RichText, Ui};
 
+use super::properties;
+use super::selection::{Selection, made_of};
 use super::session::{Session, Source, title};
-use super::values::{neat, short};
-use crate::edit::{Measure, Reflectivity, Target, Value};
-use crate::scene::{EntityId, Scene, Shape, Surface};
+use super::undo::Direction;
+use crate::edit::{Target, Value};
+use crate::scene::{EntityId, NumberRow, Scene};
 
 /// Width of the panel when it is opened first, in points.
 pub(super) const WIDTH: f32 = 270.0;
 
 /// Height for what was clicked, in points.
 const SELECTED: f32 = 250.0;
+
+/// Height of a list, in points.
+const LIST: f32 = 150.0;
 
 /// What the user wants done.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,13 +35,17 @@ pub(super) enum Wanted {
     CopyCamera,
     /// The picture saved.
     SavePicture,
+    /// The last step taken back.
+    Undo,
+    /// It done again.
+    Redo,
 }
 
 /// What the panel remembers.
 #[derive(Debug, Default)]
 pub(super) struct Side {
     /// What was clicked.
-    pub(super) selected: Option<EntityId>,
+    pub(super) selection: Selection,
     /// What is under the cursor in a list.
     pub(super) hovered: Option<EntityId>,
 }
@@ -51,12 +60,9 @@ pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wante
         ui.weak("Nothing to show yet.");
         return wanted;
     };
-    // Names that no longer exist are not kept.
-    side.selected = side
-        .selected
-        .filter(|entity| title(scene, *entity).is_some());
+    side.selection.follow(scene);
     // The panel opens below the lists, so that they stay where they are when something is clicked.
-    if let Some(entity) = side.selected {
+    if let Some(entity) = side.selection.entity() {
         egui::Panel::bottom("selected")
             .resizable(true)
             .default_size(SELECTED)
@@ -64,7 +70,9 @@ pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wante
                 egui::ScrollArea::vertical()
                     .id_salt("selected")
                     .auto_shrink([false, false])
-                    .show(ui, |ui| selected(ui, entity, session, scene, &mut wanted));
+                    .show(ui, |ui| {
+                        selected(ui, entity, session, &mut side.selection, &mut wanted);
+                    });
             });
     }
     egui::ScrollArea::vertical()
@@ -79,20 +87,16 @@ pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wante
     wanted
 }
 
-/// The viewpoint.
+/// The camera: the viewpoint, and the rest where it is asked for.
 fn view(ui: &mut Ui, session: &Session, scene: &Scene, wanted: &mut Vec<Wanted>) {
-    ui.label(RichText::new("Viewpoint").strong());
-    let speed = scene.camera.worlddim.x / 200.0;
-    ui.horizontal(|ui| {
-        drags(
-            ui,
-            session,
-            Target::Viewpoint,
-            ["x", "y", "z"],
-            speed,
-            wanted,
-        )
-    });
+    let camera = EntityId::Camera;
+    let is_viewpoint = |row: &NumberRow| row.name() == "viewpoint";
+    properties::show(ui, session, scene, camera, is_viewpoint, wanted);
+    egui::CollapsingHeader::new("screen")
+        .id_salt("screen")
+        .show(ui, |ui| {
+            properties::show(ui, session, scene, camera, |row| !is_viewpoint(row), wanted);
+        });
     ui.horizontal(|ui| {
         if ui
             .small_button("copy camera")
@@ -113,7 +117,21 @@ fn view(ui: &mut Ui, session: &Session, scene: &Scene, wanted: &mut Vec<Wanted>)
 
 /// What was changed on top of the file, and what may become of it.
 fn changes(ui: &mut Ui, session: &Session, wanted: &mut Vec<Wanted>) {
-    let count = session.changes().len();
+    let count = session.unsaved().len();
+    let steps = [Direction::Undo, Direction::Redo].map(|way| session.can_step(way));
+    if steps != [false; 2] {
+        ui.horizontal(|ui| {
+            for (can, text, key, want) in [
+                (steps[0], "undo", "Ctrl+Z", Wanted::Undo),
+                (steps[1], "redo", "Ctrl+Shift+Z", Wanted::Redo),
+            ] {
+                let button = egui::Button::new(text).small();
+                if ui.add_enabled(can, button).on_hover_text(key).clicked() {
+                    wanted.push(want);
+                }
+            }
+        });
+    }
     if count == 0 {
         return;
     }
@@ -152,25 +170,17 @@ fn selected(
     ui: &mut Ui,
     entity: EntityId,
     session: &Session,
-    scene: &Scene,
+    selection: &mut Selection,
     wanted: &mut Vec<Wanted>,
 ) {
+    let Some(scene) = session.good().map(|good| &good.scene) else {
+        return;
+    };
     if let Some((kind, name)) = title(scene, entity) {
         ui.label(RichText::new(format!("{kind} {name}")).strong());
     }
-    match entity {
-        EntityId::Material(i) => {
-            for reflectivity in Reflectivity::ALL {
-                let target = Target::Material(i, reflectivity);
-                sliders(ui, session, target, ["r", "g", "b"], wanted);
-            }
-        }
-        EntityId::Light(i) => {
-            sliders(ui, session, Target::Light(i), ["r", "g", "b"], wanted);
-        }
-        EntityId::Object(i) => object(ui, session, scene, i, wanted),
-        EntityId::Camera | EntityId::Texture(_) => {}
-    }
+    links(ui, scene, entity, selection);
+    properties::show(ui, session, scene, entity, |_| true, wanted);
     if let Some(Source { line, text }) = session.source(entity) {
         ui.label(format!("{}, line {line}", session.name()));
         egui::Frame::group(ui.style()).show(ui, |ui| {
@@ -184,153 +194,46 @@ fn selected(
     }
 }
 
-fn object(ui: &mut Ui, session: &Session, scene: &Scene, i: usize, wanted: &mut Vec<Wanted>) {
-    let Some(object) = scene.objects.get(i) else {
-        return;
-    };
-    match object.shape {
-        Shape::Sphere { .. } => {
-            let speed = scene.camera.worlddim.x / 200.0;
-            ui.horizontal(|ui| {
-                ui.label("center");
-                drags(
-                    ui,
-                    session,
-                    Target::Sphere(i, Measure::Center),
-                    ["x", "y", "z"],
-                    speed,
-                    wanted,
-                );
-            });
-            sliders(
-                ui,
-                session,
-                Target::Sphere(i, Measure::Radius),
-                [""],
-                wanted,
-            );
-        }
-        Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => {}
-    }
-    let material = |index: usize| scene.materials.get(index).map_or("", |m| m.name.as_str());
-    let mut text = format!("material {}", material(object.material));
-    match object.surface {
-        Surface::Tiled { altmaterial, .. } => {
-            text.push_str(&format!(", altmaterial {}", material(altmaterial)));
-        }
-        Surface::Plain | Surface::Procedural { .. } | Surface::Textured { .. } => {}
-    }
-    ui.label(text);
-}
-
-/// Numbers to be dragged or typed.
-fn drags<const N: usize>(
-    ui: &mut Ui,
-    session: &Session,
-    target: Target,
-    names: [&str; N],
-    speed: f64,
-    wanted: &mut Vec<Wanted>,
-) {
-    let Some(value) = session.value(target) else {
-        return;
-    };
-    let mut numbers = value.numbers().to_vec();
-    let mut touched = false;
-    for (name, number) in names.iter().zip(&mut numbers) {
-        let drag = egui::DragValue::new(number)
-            .speed(speed)
-            .max_decimals(12)
-            .custom_formatter(|number, _| short(number))
-            .prefix(format!("{name} "));
-        if ui.add(drag).changed() {
-            *number = neat(*number, 50.0 * speed);
-            touched = true;
-        }
-    }
-    reset(ui, session, target, wanted);
-    if touched {
-        wanted.extend(value_of(&numbers).map(|value| Wanted::Set(target, value)));
-    }
-}
-
-/// A slider for each number.
-fn sliders<const N: usize>(
-    ui: &mut Ui,
-    session: &Session,
-    target: Target,
-    names: [&str; N],
-    wanted: &mut Vec<Wanted>,
-) {
-    let Some(value) = session.value(target) else {
-        return;
-    };
-    let mut numbers = value.numbers().to_vec();
-    // The slider goes up to twice the file's value, whatever the value is now, so that its range does not move while it
-    // is dragged.
-    let file = session.good().and_then(|good| target.value_in(&good.scene));
-    let largest = file.map_or(0.0, |file| {
-        file.numbers().iter().copied().fold(0.0, f64::max)
-    });
-    let most = if largest > 0.0 { 2.0 * largest } else { 1.0 };
-    ui.horizontal(|ui| {
-        ui.label(target.attribute());
-        reset(ui, session, target, wanted);
-    });
-    let mut touched = false;
-    for (name, number) in names.iter().zip(&mut numbers) {
-        let slider = egui::Slider::new(number, 0.0..=most)
-            .clamping(egui::SliderClamping::Never)
-            .max_decimals(12)
-            .custom_formatter(|number, _| short(number))
-            .text(*name);
-        if ui.add(slider).changed() {
-            *number = neat(*number, most);
-            touched = true;
-        }
-    }
-    if touched {
-        wanted.extend(value_of(&numbers).map(|value| Wanted::Set(target, value)));
-    }
-}
-
-fn value_of(numbers: &[f64]) -> Option<Value> {
-    match *numbers {
-        [number] => Some(number.into()),
-        [x, y, z] => Some([x, y, z].into()),
-        _ => None,
-    }
-}
-
-/// A button that brings the file's value back, where there is a change.
-fn reset(ui: &mut Ui, session: &Session, target: Target, wanted: &mut Vec<Wanted>) {
-    if session.changes().get(target).is_some()
-        && ui
-            .small_button("reset")
-            .on_hover_text("as the file has it")
-            .clicked()
-    {
-        wanted.push(Wanted::Reset(target));
+/// What the entity is made of: names that lead there.
+fn links(ui: &mut Ui, scene: &Scene, entity: EntityId, selection: &mut Selection) {
+    for (attribute, to) in made_of(scene, entity) {
+        let Some((_, name)) = title(scene, to) else {
+            continue;
+        };
+        ui.horizontal(|ui| {
+            ui.label(attribute);
+            if ui.link(name).clicked() {
+                selection.select(scene, Some(to));
+            }
+        });
     }
 }
 
 /// The lists of objects, materials and lights.
 fn lists(ui: &mut Ui, side: &mut Side, scene: &Scene) {
     type Made = fn(usize) -> EntityId;
-    let kinds: [(&str, usize, Made); 3] = [
+    let kinds: [(&str, usize, Made); 4] = [
         ("Objects", scene.objects.len(), EntityId::Object),
         ("Materials", scene.materials.len(), EntityId::Material),
         ("Lights", scene.lights.len(), EntityId::Light),
+        ("Textures", scene.textures.len(), EntityId::Texture),
     ];
     for (title, count, entity) in kinds {
         if count == 0 {
             continue;
         }
-        egui::CollapsingHeader::new(format!("{title} ({count})"))
+        let selected = side.selection.to_be_shown();
+        let shown = selected.and_then(|it| (0..count).find(|index| entity(*index) == it));
+        let header = egui::CollapsingHeader::new(format!("{title} ({count})"))
             .id_salt(title)
             .default_open(true)
-            .show(ui, |ui| list(ui, side, scene, title, count, entity));
+            .open(shown.map(|_| true))
+            .show(ui, |ui| list(ui, side, scene, title, count, entity, shown));
+        if shown.is_some() {
+            header.header_response.scroll_to_me(Some(egui::Align::TOP));
+        }
     }
+    side.selection.was_shown();
 }
 
 fn list(
@@ -340,29 +243,35 @@ fn list(
     kind: &str,
     count: usize,
     entity: fn(usize) -> EntityId,
+    shown: Option<usize>,
 ) {
     let height = ui.text_style_height(&egui::TextStyle::Button) + 2.0;
-    egui::ScrollArea::vertical()
+    let mut area = egui::ScrollArea::vertical()
         .id_salt(kind)
-        .max_height(150.0)
-        .auto_shrink([false, true])
-        .show_rows(ui, height, count, |ui, rows| {
-            for entity in rows.map(entity) {
-                let Some((kind, name)) = title(scene, entity) else {
-                    continue;
-                };
-                let is_selected = side.selected == Some(entity);
-                let row =
-                    egui::Button::selectable(is_selected, format!("{name}  ({kind})")).truncate();
-                let row = ui.add(row);
-                if row.hovered() {
-                    side.hovered = Some(entity);
-                }
-                if row.clicked() {
-                    side.selected = (!is_selected).then_some(entity);
-                }
+        .max_height(LIST)
+        .auto_shrink([false, true]);
+    if let Some(index) = shown {
+        // In the middle of the list.
+        let row = height + ui.spacing().item_spacing.y;
+        let offset = (index as f32 + 0.5) * row - 0.5 * LIST;
+        area = area.vertical_scroll_offset(offset.max(0.0));
+    }
+    area.show_rows(ui, height, count, |ui, rows| {
+        for entity in rows.map(entity) {
+            let Some((kind, name)) = title(scene, entity) else {
+                continue;
+            };
+            let is_selected = side.selection.entity() == Some(entity);
+            let row = egui::Button::selectable(is_selected, format!("{name}  ({kind})")).truncate();
+            let row = ui.add(row);
+            if row.hovered() {
+                side.hovered = Some(entity);
             }
-        });
+            if row.clicked() {
+                side.selection.click(scene, entity);
+            }
+        }
+    });
 }
 
 #[cfg(test)]

@@ -65,9 +65,8 @@ pub(super) fn remarks(picture: &PreviewPicture) -> Vec<String> {
 /// What the line shows besides the picture.
 #[derive(Debug, Default)]
 pub(super) struct Line {
-    /// What is shown is not the newest: how much of that is done, if it has begun.
-    pub(super) working: bool,
-    pub(super) share: Option<f32>,
+    /// What is being done, if anything.
+    pub(super) doing: Option<String>,
     /// Pixels of the window for each of the picture.
     pub(super) zoom: f64,
     /// How many pictures a second are shown, while the view moves.
@@ -108,15 +107,9 @@ pub(super) fn show(ui: &mut Ui, picture: Option<&PreviewPicture>, line: &Line) -
                 ui.label("no picture yet");
             }
         }
-        if line.working {
-            match line.share {
-                Some(share) if share > 0.0 => {
-                    ui.label(format!("rendering, {:.0} %", 100.0 * share));
-                }
-                _ => {
-                    ui.label("rendering");
-                }
-            }
+        if let Some(doing) = &line.doing {
+            ui.separator();
+            ui.label(doing);
         }
         if let Some(frames) = line.frames {
             ui.label(format!("{frames:.0} pictures/s"));

@@ -1,20 +1,23 @@
-//! The thread that renders what the window wants to show: at once and small if need be, then whole, then certified.
+//! The thread that renders what the window wants to show: at once and small if need be, then whole if that is much
+//! quicker than what comes last, the certified picture.
 //!
 //! Between the window, which leaves [`Wish`]es, and `render`, which makes the pictures. The newest wish wins: what is
 //! under way for an older one is given up, but for the first picture of each, without which a steady drag would show
 //! nothing.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::adaptive_resolution::AdaptiveResolution;
+use super::canvases::Canvases;
 use super::latest::{LatestReceiver, LatestSender, latest};
+use super::priority;
+use super::progress::Progress;
 use crate::edit::Changes;
 use crate::frame::DecidedBy;
 use crate::gpu::GpuError;
-use crate::gpu::canvas::{Canvas, Scatter};
+use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
 use crate::render::{self, Backend, Live, Precision, Report, Settings, render_live};
@@ -77,32 +80,13 @@ pub(super) enum News {
     },
 }
 
-/// What is being rendered, for the status line: written by the worker, read by the window.
-#[derive(Debug, Default)]
-pub(super) struct Progress {
-    /// Rows that are done, in thousandths of all; 1000 where nothing is rendered.
-    thousandths: AtomicU32,
-}
-
-impl Progress {
-    /// The share of the picture under way that is done; none where none is under way.
-    pub(super) fn share(&self) -> Option<f32> {
-        let done = self.thousandths.load(Ordering::Relaxed);
-        (done < 1000).then_some(done as f32 / 1000.0)
-    }
-
-    fn set(&self, thousandths: u32) {
-        self.thousandths.store(thousandths, Ordering::Relaxed);
-    }
-}
-
 /// The worker, as the window has it. Dropped, it ends soon.
 #[derive(Debug)]
 pub(super) struct Worker {
     /// Where wishes are left, by whoever has them.
     pub(super) wishes: Arc<LatestSender<Wish>>,
     thread: Option<JoinHandle<()>>,
-    /// How far the picture under way is.
+    /// What it does now, and how far it is.
     pub(super) progress: Arc<Progress>,
 }
 
@@ -113,26 +97,27 @@ impl Worker {
     /// If the thread cannot be started.
     pub(super) fn new(
         gpu: Arc<Gpu>,
-        scatter: Scatter,
+        canvases: Canvases,
         settings: Settings,
         tell: impl FnMut(News) + Send + 'static,
     ) -> std::io::Result<Self> {
         let (wishes, receiver) = latest();
         let progress = Arc::new(Progress::default());
-        progress.set(1000);
         let work = Work {
             gpu,
-            scatter,
+            canvases,
             settings,
             receiver,
             progress: Arc::clone(&progress),
             resolution: AdaptiveResolution::default(),
             compiled: Compiled::default(),
-            canvases: Vec::new(),
         };
         let thread = std::thread::Builder::new()
             .name("render".into())
-            .spawn(move || work.run(tell))?;
+            .spawn(move || {
+                priority::lower();
+                work.run(tell);
+            })?;
         Ok(Self {
             wishes: Arc::new(wishes),
             thread: Some(thread),
@@ -162,14 +147,12 @@ impl Drop for Worker {
 /// The worker's own side.
 struct Work {
     gpu: Arc<Gpu>,
-    scatter: Scatter,
+    canvases: Canvases,
     settings: Settings,
     receiver: LatestReceiver<Wish>,
     progress: Arc<Progress>,
     resolution: AdaptiveResolution,
     compiled: Compiled,
-    /// Canvases to be used again once nobody shows them.
-    canvases: Vec<Arc<Canvas>>,
 }
 
 /// A wish that is being worked on.
@@ -194,7 +177,7 @@ impl Work {
             if let Err(Unmade::Failed(why)) = self.fulfil(number, &wish, &mut tell) {
                 tell(News::Failed { number, why });
             }
-            self.progress.set(1000);
+            self.progress.end();
         }
     }
 
@@ -209,7 +192,7 @@ impl Work {
         } else {
             Arc::new(wish.changes.apply(&wish.scene))
         };
-        let most = MOST.min(Canvas::most(&self.gpu));
+        let most = MOST.min(self.canvases.most());
         let whole = scene.camera.pixeldim;
         let task = PreviewTask {
             number,
@@ -242,18 +225,22 @@ impl Work {
                 Err(unmade) => return Err(unmade),
             }
         }
-        if first > 1 {
+        // Where nothing moves the certified picture is next, and the more so where a fast one takes as long: its shader
+        // is one for all viewpoints.
+        if first > 1 && self.resolution.is_whole_worth_it() {
             let started = Instant::now();
             let picture = self.make(&task, 1, Precision::Fast, |old| old)?;
             self.resolution.took(1, started.elapsed().as_secs_f64());
             tell(done(picture, wish.since.elapsed()));
         }
-        self.progress.set(1000);
+        self.progress.wait();
         if !self.receiver.rest(number, wish.since + STILL) {
             return Ok(());
         }
         let started = Instant::now();
         let picture = self.make(&task, 1, Precision::Certified, |old| old)?;
+        self.resolution
+            .took_certified(started.elapsed().as_secs_f64());
         tell(done(picture, started.elapsed()));
         Ok(())
     }
@@ -269,7 +256,8 @@ impl Work {
         let small = sized(&task.scene, smaller);
         let scene = small.as_ref().unwrap_or(&task.scene);
         let [width, height] = scene.camera.pixeldim;
-        let canvas = self.canvas([width, height])?;
+        self.progress.begin(precision);
+        let begun = self.canvases.begin([width, height])?;
         let mut settings = Settings {
             precision,
             backend: Backend::Auto,
@@ -279,7 +267,7 @@ impl Work {
         let stop = || stop(self.receiver.is_old(task.number));
         let live = Live {
             gpu: &self.gpu,
-            canvas: Some(&canvas),
+            canvas: begun.as_deref(),
             compiled: Some(&self.compiled),
             dispatch_seconds: DISPATCH,
             stop: &stop,
@@ -290,22 +278,23 @@ impl Work {
             let mut verdicts = Vec::with_capacity(pixels);
             let mut trouble = None;
             let rendered = render_live(scene, &settings, &live, &mut |band| {
-                if let Err(error) = self.scatter.put(&self.gpu, &canvas, band) {
+                if let Err(error) = self.canvases.put(begun.as_deref(), band) {
                     trouble = Some(error);
                     return Err(std::io::Error::other("the GPU's fault"));
                 }
                 rgb.extend_from_slice(&band.rgb);
                 verdicts.extend(band.verdicts.iter().flatten());
-                let done = u64::from(height - band.rows.start) * 999 / u64::from(height);
-                self.progress.set(done as u32);
+                let rows = height - band.rows.start;
+                self.progress.reached(f64::from(rows) / f64::from(height));
                 Ok(())
             });
+            self.progress.end();
             return match (rendered, trouble) {
                 (Ok(report), _) => Ok(PreviewPicture {
                     number: task.number,
                     scene: Arc::clone(&task.scene),
                     whole: task.whole,
-                    canvas,
+                    canvas: self.canvases.end(begun, [width, height], &rgb, &verdicts)?,
                     rgb,
                     verdicts,
                     precision,
@@ -318,26 +307,13 @@ impl Work {
                 // Rows that were handed on are wrong, so the CPU renders the whole picture again.
                 (Err(render::Error::Revoked(_)), _) if settings.backend == Backend::Auto => {
                     settings.backend = Backend::Cpu;
+                    self.progress.begin(precision);
                     continue;
                 }
                 (Err(_), Some(error)) => Err(error.into()),
                 (Err(error), None) => Err(Unmade::Failed(error.to_string())),
             };
         }
-    }
-
-    /// A canvas that nobody shows.
-    fn canvas(&mut self, size: [u32; 2]) -> Result<Arc<Canvas>, GpuError> {
-        // Canvases of another size are dropped, as they will not be used soon; those on the screen are kept.
-        self.canvases
-            .retain(|canvas| canvas.size == size || Arc::strong_count(canvas) > 1);
-        let mut free = self.canvases.iter().filter(|canvas| canvas.size == size);
-        if let Some(canvas) = free.find(|canvas| Arc::strong_count(canvas) == 1) {
-            return Ok(Arc::clone(canvas));
-        }
-        let canvas = Arc::new(Canvas::new(&self.gpu, size)?);
-        self.canvases.push(Arc::clone(&canvas));
-        Ok(canvas)
     }
 }
 

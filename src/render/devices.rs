@@ -11,8 +11,9 @@ use std::thread::{self, JoinHandle};
 use super::device_thread::News;
 use crate::certify::trust;
 use crate::gpu::GpuError;
-use crate::gpu::adapters::{self, Candidates};
-use crate::gpu::device::{Gpu, identity};
+use crate::gpu::adapters;
+use crate::gpu::candidates::{Candidates, candidates};
+use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
 use crate::settings::{Precision, Settings};
 use crate::stopwatch::{Phase, Phases, Stopwatch};
@@ -20,8 +21,17 @@ use crate::stopwatch::{Phase, Phases, Stopwatch};
 /// A device that is open, and the shaders that it compiled lately.
 #[derive(Debug)]
 pub(super) struct Device {
-    pub(super) gpu: Gpu,
+    pub(super) gpu: Arc<Gpu>,
     pub(super) compiled: Compiled,
+}
+
+impl Device {
+    fn new(gpu: Arc<Gpu>) -> Arc<Self> {
+        Arc::new(Self {
+            gpu,
+            compiled: Compiled::default(),
+        })
+    }
 }
 
 /// The devices that are open, or will be. When it is dropped, it waits for the threads that use them: a process that is
@@ -74,14 +84,9 @@ impl Devices {
 
     /// These, which are open, and no others.
     pub fn of(gpus: Vec<Gpu>) -> Self {
-        let device = |gpu| {
-            Arc::new(Device {
-                gpu,
-                compiled: Compiled::default(),
-            })
-        };
+        let devices = gpus.into_iter().map(|gpu| Device::new(Arc::new(gpu)));
         Self {
-            open: Arc::new(Mutex::new(gpus.into_iter().map(device).collect())),
+            open: Arc::new(Mutex::new(devices.collect())),
             given: true,
             threads: Mutex::default(),
         }
@@ -148,28 +153,20 @@ fn find(open: &Mutex<Vec<Arc<Device>>>, given: bool, wanted: &Wanted) -> Found {
     let opened: Vec<Result<Arc<Device>, GpuError>> = if given {
         open.iter().map(|device| Ok(Arc::clone(device))).collect()
     } else {
-        let adapters = match adapters::candidates(wanted.adapter.as_deref(), wanted.software) {
+        let adapters = match candidates(wanted.adapter.as_deref(), wanted.software) {
             Ok(Candidates::Adapters(adapters)) => adapters,
             Ok(Candidates::Software(name)) => return Found::Software(name),
             Err(error) => return Found::None(error),
         };
         watch.lap(Phase::Instance);
-        let mut free: Vec<_> = open.clone();
         let opened = adapters.iter().map(|adapter| {
-            let identity = identity(&adapter.get_info());
-            // Two cards of a kind have one identity.
-            if let Some(place) = free
-                .iter()
-                .position(|device| device.gpu.identity == identity)
-            {
-                return Ok(free.remove(place));
-            }
-            let device = Arc::new(Device {
-                gpu: Gpu::open(adapter)?,
-                compiled: Compiled::default(),
-            });
-            open.push(Arc::clone(&device));
-            Ok(device)
+            let gpu = adapters::shared_on(adapter)?;
+            let known = open.iter().find(|device| Arc::ptr_eq(&device.gpu, &gpu));
+            Ok(known.cloned().unwrap_or_else(|| {
+                let device = Device::new(gpu);
+                open.push(Arc::clone(&device));
+                device
+            }))
         });
         opened.collect()
     };

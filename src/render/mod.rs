@@ -21,6 +21,7 @@ use std::sync::Arc;
 use std::{fs, io};
 
 use crate::certify::pixels::PixelDecider;
+use crate::cores;
 use crate::files::reason;
 use crate::gpu::GpuError;
 use crate::gpu::bands::DISPATCH_SECONDS;
@@ -184,17 +185,12 @@ pub fn render_live(
     run(scene, settings, Source::Live(live), live.stop, emit)
 }
 
-/// Starts the CPU threads that all pictures share, where they are wanted and have not been started yet. (Started by
-/// themselves where they are used first, they would end the process if the system refused.)
+/// Starts the CPU threads that all pictures share, where they are wanted.
 fn start_threads(settings: &Settings) -> Result<(), Error> {
     if settings.threads.is_some() {
         return Ok(());
     }
-    match rayon::ThreadPoolBuilder::new().build_global() {
-        // Without a cause it says that they have been started.
-        Err(error) if error.source().is_some() => Err(no_threads(&error)),
-        _ => Ok(()),
-    }
+    cores::start(None).map_err(|error| no_threads(&error))
 }
 
 fn no_threads(error: &rayon::ThreadPoolBuildError) -> Error {

@@ -20,7 +20,8 @@ use super::{Backend, Emit, Error, Live, Precision, Settings};
 use crate::certify::lanes::Lanes;
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
-use crate::gpu::{GpuError, adapters};
+use crate::gpu::GpuError;
+use crate::gpu::candidates::{is_named, may_be_hardware};
 use crate::jitter::Jitter;
 use crate::render::install_hint;
 use crate::scene::Scene;
@@ -181,11 +182,11 @@ impl<'a> Rendering<'a> {
         let certified = self.settings.precision == Precision::Certified;
         // Where a device was named, where it alone may make the bytes, or where the CPU is not wanted, it is waited for.
         let waits = self.settings.backend == Backend::Gpu
-            || adapters::is_one_named(self.settings)
+            || is_named(self.settings.adapter.as_deref())
             || !certified;
         let mut asked = false;
         if let (true, Source::Devices(devices)) = (wants_devices, source)
-            && (waits || devices.are_given() || adapters::may_be_hardware())
+            && (waits || devices.are_given() || may_be_hardware())
         {
             devices.ask(Wanted::new(self.settings, waits), sender.clone());
             asked = true;

@@ -13,6 +13,6 @@ pub(super) fn mark_length(text: &[u8]) -> usize {
 }
 
 /// White space of the scene language: that of C's `isspace`.
-pub(super) fn is_space(byte: u8) -> bool {
+pub(super) const fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | 0x0B | 0x0C)
 }

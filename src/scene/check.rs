@@ -156,8 +156,7 @@ pub(super) fn faults(
         }
     }
     if faults.is_empty() {
-        let broken = entity.relations.iter().find(|r| (r.broken)(draft));
-        faults.extend(broken.map(|r| format!("`{}` {}", r.attribute, r.message)));
+        faults.extend(broken_relation(entity, draft));
     }
     faults
 }
@@ -175,24 +174,27 @@ fn row_fault(row: &Attribute, values: &[f64]) -> Option<String> {
     }
 }
 
-/// What is wrong with new numbers for an attribute of an entity type, by its row. What attributes must keep between
-/// them is not asked: it concerns none that [`edit`](crate::edit) changes.
-pub(crate) fn fault(entity: &str, attribute: &str, values: &[f64]) -> Option<String> {
-    let Some((_, row)) =
-        table::find(entity.as_bytes()).and_then(|entity| entity.row(attribute.as_bytes()))
-    else {
-        return Some(format!("`{entity}` has no attribute `{attribute}`"));
-    };
+/// What is wrong with new numbers for an attribute, by its row: nothing of what attributes must keep between them.
+pub(super) fn number_fault(row: &Attribute, values: &[f64]) -> Option<String> {
+    let name = row.name;
     match row.take {
         Take::Numbers(count, _) | Take::Integers(count, _) if count != values.len() => Some(
-            format!("`{attribute}` takes {count} of them, not {}", values.len()),
+            format!("`{name}` takes {count} of them, not {}", values.len()),
         ),
-        Take::OneOrThree(_) if values.len() != 3 => Some(format!(
-            "`{attribute}` takes 3 of them, not {}",
-            values.len()
-        )),
+        Take::OneOrThree(_) if values.len() != 3 => {
+            Some(format!("`{name}` takes 3 of them, not {}", values.len()))
+        }
+        Take::Integers(..) if values.iter().any(|value| value.fract() != 0.0) => {
+            Some(format!("`{name}` takes whole numbers, and is {values:?}"))
+        }
         _ => row_fault(row, values),
     }
+}
+
+/// What attributes of an entity fail to keep between them.
+pub(super) fn broken_relation(entity: &Entity, draft: &Draft) -> Option<String> {
+    let broken = entity.relations.iter().find(|r| (r.broken)(draft));
+    broken.map(|r| format!("`{}` {}", r.attribute, r.message))
 }
 
 /// As in a scene from a file, zero is never negative.

@@ -5,6 +5,8 @@
 //! So this is the last step of text → lex → parse → [`Scene`]. On the way back the model is taken apart field by field,
 //! here and wherever it is read as a whole, so that the compiler names each place that a new field has to reach.
 
+mod of_model;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -108,21 +110,9 @@ impl Assembly {
     pub(super) fn add(&mut self, kind: EntityKind, draft: Draft) {
         match kind {
             EntityKind::Camera => {
-                self.camera.get_or_insert(Camera {
-                    name: draft.name,
-                    pixeldim: draft.pixeldim.map(|pixels| pixels as u32),
-                    worlddim: draft.worlddim.into(),
-                    viewpoint: draft.viewpoint.into(),
-                });
+                self.camera.get_or_insert(draft.into_camera());
             }
-            EntityKind::Material => self.materials.push(Material {
-                name: draft.name,
-                ambient: draft.ambient.into(),
-                diffuse: draft.diffuse.into(),
-                specular: draft.specular.into(),
-                shininess: draft.shininess[0],
-                transparency: draft.transparency[0],
-            }),
+            EntityKind::Material => self.materials.push(draft.into_material()),
             EntityKind::Texture => {
                 // A texture without a picture is an error that was reported; its place in the list stays taken.
                 let picture = draft.picture.unwrap_or_else(|| TexturePicture::unread(""));
@@ -134,24 +124,8 @@ impl Assembly {
                     remark: picture.remark,
                 });
             }
-            EntityKind::Light(class) => {
-                let beam = draft.beam(class);
-                self.lights.push(Light {
-                    name: draft.name,
-                    location: draft.location.into(),
-                    emissivity: draft.emissivity.into(),
-                    beam,
-                });
-            }
-            EntityKind::Object(class) => {
-                let (shape, surface) = draft.shape(class);
-                self.objects.push(Object {
-                    name: draft.name,
-                    material: draft.material,
-                    shape,
-                    surface,
-                });
-            }
+            EntityKind::Light(class) => self.lights.push(draft.into_light(class)),
+            EntityKind::Object(class) => self.objects.push(draft.into_object(class)),
         }
     }
 
@@ -177,6 +151,46 @@ impl Assembly {
 }
 
 impl Draft {
+    pub(super) fn into_camera(self) -> Camera {
+        Camera {
+            name: self.name,
+            pixeldim: self.pixeldim.map(|pixels| pixels as u32),
+            worlddim: self.worlddim.into(),
+            viewpoint: self.viewpoint.into(),
+        }
+    }
+
+    pub(super) fn into_material(self) -> Material {
+        Material {
+            name: self.name,
+            ambient: self.ambient.into(),
+            diffuse: self.diffuse.into(),
+            specular: self.specular.into(),
+            shininess: self.shininess[0],
+            transparency: self.transparency[0],
+        }
+    }
+
+    pub(super) fn into_light(self, class: LightClass) -> Light {
+        let beam = self.beam(class);
+        Light {
+            name: self.name,
+            location: self.location.into(),
+            emissivity: self.emissivity.into(),
+            beam,
+        }
+    }
+
+    pub(super) fn into_object(self, class: Class) -> Object {
+        let (shape, surface) = self.shape(class);
+        Object {
+            name: self.name,
+            material: self.material,
+            shape,
+            surface,
+        }
+    }
+
     fn shape(&self, class: Class) -> (Shape, Surface) {
         let sphere = Shape::Sphere {
             center: self.center.into(),
@@ -256,12 +270,6 @@ impl Draft {
         }
     }
 
-    fn set_rectangle(&mut self, rectangle: &Rectangle) {
-        let Rectangle { xdir, dimensions } = *rectangle;
-        self.xdir = Some(xdir.to_array());
-        self.dimension = dimensions.to_array();
-    }
-
     fn texture_mode(&self) -> TextureMode {
         if self.mode[0] == 0.0 {
             TextureMode::Fit
@@ -273,161 +281,5 @@ impl Draft {
     pub(super) fn set_texture(&mut self, texture: usize, mode: TextureMode) {
         self.texture = texture;
         self.mode = [if mode == TextureMode::Fit { 0.0 } else { 1.0 }];
-    }
-
-    /// A camera, to list or to check.
-    pub(super) fn of_camera(camera: &Camera) -> Self {
-        let Camera {
-            name,
-            pixeldim,
-            worlddim,
-            viewpoint,
-        } = camera;
-        Self {
-            name: name.clone(),
-            pixeldim: pixeldim.map(f64::from),
-            worlddim: worlddim.to_array(),
-            viewpoint: viewpoint.to_array(),
-            ..Self::default()
-        }
-    }
-
-    /// A material, to list or to check.
-    pub(super) fn of_material(material: &Material) -> Self {
-        let Material {
-            name,
-            ambient,
-            diffuse,
-            specular,
-            shininess,
-            transparency,
-        } = material;
-        Self {
-            name: name.clone(),
-            ambient: ambient.to_array(),
-            diffuse: diffuse.to_array(),
-            specular: specular.to_array(),
-            shininess: [*shininess],
-            transparency: [*transparency],
-            ..Self::default()
-        }
-    }
-
-    /// A texture, to list or to check.
-    pub(super) fn of_texture(texture: &Texture) -> Self {
-        let Texture {
-            name,
-            filename,
-            path,
-            texels,
-            remark,
-        } = texture.clone();
-        Self {
-            name,
-            picture: Some(TexturePicture {
-                filename,
-                path,
-                texels,
-                remark,
-            }),
-            ..Self::default()
-        }
-    }
-
-    /// A light, to list or to check, and its kind.
-    pub(super) fn of_light(light: &Light) -> (EntityKind, Self) {
-        let Light {
-            name,
-            location,
-            emissivity,
-            beam,
-        } = light;
-        let mut draft = Self {
-            name: name.clone(),
-            location: location.to_array(),
-            emissivity: emissivity.to_array(),
-            ..Self::default()
-        };
-        match beam {
-            Beam::Everywhere => {}
-            Beam::Cone(Cone { point, theta }) => {
-                (draft.point, draft.theta) = (point.to_array(), [*theta]);
-            }
-            Beam::Picture(ProjectorPicture {
-                normal,
-                point,
-                rectangle,
-                texture,
-                mode,
-            }) => {
-                (draft.normal, draft.point) = (normal.to_array(), point.to_array());
-                draft.set_rectangle(rectangle);
-                draft.set_texture(*texture, *mode);
-            }
-        }
-        (light.kind(), draft)
-    }
-
-    /// An object, to list or to check, and its class.
-    pub(super) fn of_object(object: &Object) -> (EntityKind, Self) {
-        let Object {
-            name,
-            material,
-            shape,
-            surface,
-        } = object;
-        let mut draft = Self {
-            name: name.clone(),
-            material: *material,
-            ..Self::default()
-        };
-        match *shape {
-            Shape::Sphere { center, radius } => {
-                (draft.center, draft.radius) = (center.to_array(), [radius]);
-            }
-            Shape::Plane {
-                normal,
-                point,
-                extent,
-            } => {
-                (draft.normal, draft.point) = (normal.to_array(), point.to_array());
-                match extent {
-                    Extent::Unbounded => {}
-                    Extent::Rectangle(rectangle) => draft.set_rectangle(&rectangle),
-                }
-            }
-            Shape::Triangle(Triangle {
-                vertices,
-                normal,
-                point,
-            }) => {
-                draft.vertices = vertices.map(|vertex| vertex.to_array());
-                draft.facing = normal.map(|normal| normal.to_array());
-                draft.idle_point = point.map(|point| point.to_array());
-            }
-            Shape::Quadric(Quadric {
-                coefficients,
-                lower,
-                upper,
-            }) => {
-                draft.coefficients = coefficients;
-                draft.lower = lower.map(|lower| lower.to_array());
-                draft.upper = upper.map(|upper| upper.to_array());
-            }
-        }
-        match *surface {
-            Surface::Plain => {}
-            Surface::Procedural { shader } => draft.shader = [f64::from(shader)],
-            Surface::Tiled {
-                dimension,
-                altmaterial,
-                xdir,
-            } => {
-                (draft.dimension, draft.altmaterial) = (dimension.to_array(), altmaterial);
-                draft.xdir = xdir.map(|xdir| xdir.to_array());
-            }
-            Surface::Textured { texture, mode } => draft.set_texture(texture, mode),
-        }
-        (EntityKind::Object(object.class()), draft)
     }
 }

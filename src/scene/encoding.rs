@@ -55,7 +55,7 @@ pub(super) fn not_a_scene(bytes: &[u8]) -> Option<Diagnostic> {
         let message = format!("this text is encoded in {name}; a scene is UTF-8");
         return Some(Diagnostic::new(0..0, message).help("save it as UTF-8"));
     }
-    let nul = bytes.iter().position(|byte| *byte == 0)?;
+    let nul = memchr::memchr(0, bytes)?;
     let message = "this is not a scene: it holds a NUL byte";
     let help = "a scene is a text file in UTF-8; this may be UTF-16, or no text at all";
     Some(

@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use memchr::memchr2;
+
 use super::bytes::{is_space, mark_length};
 
 /// What a token is.
@@ -57,10 +59,16 @@ impl Token<'_> {
     }
 }
 
-/// Does this byte end a word?
-fn ends_word(byte: u8) -> bool {
-    is_space(byte) || matches!(byte, b'{' | b'}' | b'#')
-}
+/// Which bytes end a word.
+const ENDS_WORD: [bool; 256] = {
+    let mut ends = [false; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        ends[byte] = is_space(byte as u8) || matches!(byte as u8, b'{' | b'}' | b'#');
+        byte += 1;
+    }
+    ends
+};
 
 /// Walks over a text, token by token.
 #[derive(Debug, Clone)]
@@ -98,7 +106,7 @@ impl<'t> Lexer<'t> {
             Some(_) => (
                 TokenKind::Word,
                 rest.iter()
-                    .position(|byte| ends_word(*byte))
+                    .position(|byte| ENDS_WORD[usize::from(*byte)])
                     .unwrap_or(rest.len()),
             ),
         };
@@ -110,20 +118,44 @@ impl<'t> Lexer<'t> {
         }
     }
 
-    /// Moves over white space and comments.
-    fn skip_space(&mut self) {
-        let mut comment = false;
-        for byte in &self.text[self.at..] {
+    /// Moves over white space and comments; returns where the next token starts.
+    pub(super) fn skip_space(&mut self) -> usize {
+        while let Some(byte) = self.text.get(self.at) {
             match byte {
-                b'\n' | b'\r' => comment = false,
-                _ if comment => {}
-                b'#' => comment = true,
-                byte if is_space(*byte) => {}
-                _ => return,
+                b'#' => self.at = line_end(self.text, self.at),
+                byte if is_space(*byte) => self.at += 1,
+                _ => break,
             }
-            self.at += 1;
         }
+        self.at
     }
+
+    /// Moves behind the next `}`, whatever comes before it; false if there is none.
+    pub(super) fn skip_block(&mut self) -> bool {
+        while let Some(found) = memchr2(b'}', b'#', &self.text[self.at..]) {
+            self.at += found;
+            if self.text[self.at] == b'}' {
+                self.at += 1;
+                return true;
+            }
+            self.at = line_end(self.text, self.at);
+        }
+        self.at = self.text.len();
+        false
+    }
+}
+
+/// Where the line ends that this byte is in.
+fn line_end(text: &[u8], at: usize) -> usize {
+    memchr2(b'\n', b'\r', &text[at..]).map_or(text.len(), |length| at + length)
+}
+
+/// The first place from `at` on where a `}` ends that is not in a comment, as far as a line end before it tells: the
+/// first line is passed over, since it may be one.
+pub(super) fn after_block(text: &[u8], at: usize) -> usize {
+    let mut lexer = Lexer::at(text, line_end(text, at));
+    lexer.skip_block();
+    lexer.at
 }
 
 #[cfg(test)]

@@ -7,7 +7,9 @@
 //!
 //! Beside it, `places` tells where in the text what is in the scene stands.
 
+mod attributes;
 mod build;
+mod bulk;
 mod bytes;
 mod check;
 mod common_mistakes;
@@ -34,10 +36,12 @@ mod texture;
 pub(crate) mod triangle;
 mod values;
 
-pub(crate) use check::fault;
+pub(crate) use attributes::{fault, put};
+pub(crate) use numbers::MOST_NUMBERS;
 pub(crate) use parse::parse_text;
 pub(crate) use places::number_at;
 
+pub use attributes::{Bounds, NumberRow, Quantity, number_rows, numbers_of};
 pub use build::{BuildError, BuildErrors, MaterialId, SceneBuilder, TextureId};
 pub use listing::list_model;
 #[cfg(feature = "preview")]

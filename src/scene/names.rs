@@ -63,9 +63,14 @@ impl<'t> Names<'t> {
         self.excused.insert(name.text);
     }
 
+    /// The definition that a name means.
+    pub(super) fn known(&self, name: &[u8]) -> Option<usize> {
+        self.defined.get(name).map(|(index, _)| *index)
+    }
+
     /// The definition that a name means. Where there is none, the complaint is noted for the end of the file.
     pub(super) fn find(&mut self, name: Token<'t>, errors: &mut Errors) -> Option<usize> {
-        let found = self.defined.get(name.text).map(|(index, _)| *index);
+        let found = self.known(name.text);
         if found.is_none() {
             if errors.are_enough() || self.unknown.len() >= Errors::MAX_COUNTED {
                 errors.count_one();

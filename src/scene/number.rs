@@ -24,6 +24,7 @@ const SIGNIFICANT: usize = 800;
 pub(super) fn parse_number(token: &[u8]) -> Result<f64, NumberError> {
     let (negative, digits) = split_sign(token);
     let magnitude = match digits {
+        _ if let Some(short) = short_decimal(digits) => short,
         [b'0', b'x' | b'X', hexadecimal @ ..] => parse_hexadecimal(hexadecimal)?,
         _ if is_not_finite(digits) => return Err(NumberError::NotFinite),
         _ => parse_decimal(digits)?,
@@ -121,6 +122,46 @@ fn parse_exponent(text: &[u8], letter: u8) -> Option<i64> {
         [first, rest @ ..] if first.eq_ignore_ascii_case(&letter) => parse_integer(rest).ok(),
         _ => None,
     }
+}
+
+/// The powers of ten below that many places.
+const TENS: [f64; SHORT] = {
+    let mut tens = [1.0; SHORT];
+    let mut place = 1;
+    while place < SHORT {
+        // Up to 10²² each of them is an f64, and so is each product here.
+        tens[place] = 10.0 * tens[place - 1];
+        place += 1;
+    }
+    tens
+};
+
+/// So many characters at most has what [`short_decimal`] reads: 16 digits and a point.
+const SHORT: usize = 17;
+
+/// Reads a decimal number without exponent whose digits, as one whole number, are an f64, as those of nearly all
+/// numbers of a scene are: that and the power of ten are exact, and dividing them rounds once. None for any other text.
+fn short_decimal(digits: &[u8]) -> Option<f64> {
+    if digits.len() > SHORT {
+        return None;
+    }
+    let (mut whole, mut point) = (0_u64, None);
+    for (place, byte) in digits.iter().enumerate() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            whole = 10 * whole + u64::from(digit);
+        } else if *byte == b'.' && point.is_none() {
+            point = Some(place);
+        } else {
+            return None;
+        }
+    }
+    let count = digits.len() - usize::from(point.is_some());
+    if count == 0 || whole > 1 << f64::MANTISSA_DIGITS {
+        return None;
+    }
+    let places = point.map_or(0, |point| digits.len() - point - 1);
+    Some(whole as f64 / TENS[places])
 }
 
 fn parse_decimal(text: &[u8]) -> Result<f64, NumberError> {
@@ -288,6 +329,39 @@ mod tests {
             "0x1.fffffffffffff8p1023",
         ] {
             assert_eq!(number(token), Err(NumberError::TooLarge), "{token}");
+        }
+    }
+
+    /// Numbers of few digits take a way of their own; the standard library's is another.
+    #[test]
+    fn short_numbers_are_the_nearest() {
+        let mut seed = 1_u64;
+        let mut short = 0;
+        for _ in 0..200_000 {
+            // Knuth's MMIX generator.
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let (digits, places) = (1 + seed % 18, (seed >> 8) % 19);
+            let whole = seed.rotate_right(20) % 10_u64.pow(digits as u32);
+            let mut text = whole.to_string();
+            if places as usize <= text.len() {
+                text.insert(text.len() - places as usize, '.');
+            }
+            short += u32::from(short_decimal(text.as_bytes()).is_some());
+            let nearest: f64 = text.parse().unwrap();
+            assert_eq!(
+                number(&text).map(f64::to_bits),
+                Ok(nearest.to_bits()),
+                "{text}"
+            );
+        }
+        assert!((100_000..199_000).contains(&short), "{short}");
+        for (text, value) in [
+            ("9007199254740992", Some(9_007_199_254_740_992.0)),
+            ("9007199254740993", None),
+        ] {
+            assert_eq!(short_decimal(text.as_bytes()), value);
         }
     }
 

@@ -13,7 +13,7 @@ use super::values::give_rows_in;
 use crate::diagnostic::Diagnostic;
 
 /// The most numbers that an attribute takes: a quadric's coefficients.
-const MOST_NUMBERS: usize = 10;
+pub(crate) const MOST_NUMBERS: usize = 10;
 
 /// Numbers as they are read.
 struct Numbers<'t> {

@@ -10,6 +10,7 @@ use std::iter;
 use std::ops::Range;
 use std::path::Path;
 
+use super::bulk::{Reader, Starts};
 use super::common_mistakes;
 use super::draft::{Assembly, Draft};
 use super::encoding;
@@ -30,7 +31,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 /// # Errors
 /// Everything that is wrong with the scene, in the order of the text.
 pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<Scene, Diagnostics> {
-    read(name, bytes, Some(folder))
+    read(name, bytes, Some(folder), Starts::of(bytes))
 }
 
 /// Reads a scene but for the pictures of its textures, which stay empty: for who asks about the text alone.
@@ -38,10 +39,16 @@ pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<Scene, Diagnosti
 /// # Errors
 /// As [`parse`], but for textures.
 pub(crate) fn parse_text(name: &str, bytes: &[u8]) -> Result<Scene, Diagnostics> {
-    read(name, bytes, None)
+    read(name, bytes, None, Starts::of(bytes))
 }
 
-fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<Scene, Diagnostics> {
+/// Reads a scene; where `starts` are known, many objects at once.
+fn read(
+    name: &str,
+    bytes: &[u8],
+    folder: Option<&Path>,
+    starts: Starts,
+) -> Result<Scene, Diagnostics> {
     if let Some(error) = encoding::not_a_scene(bytes) {
         return Err(Diagnostics::new(name, bytes, vec![error], 1));
     }
@@ -56,7 +63,7 @@ fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<Scene, Diagno
         is_text = table::find(parser.window[0].text).is_some();
     }
     if is_text {
-        parser.file();
+        parser.file(starts);
         parser.end_of_file();
     }
     let Parser {
@@ -158,8 +165,9 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn file(&mut self) {
+    fn file(&mut self, mut starts: Starts) {
         while !self.errors.are_too_many() {
+            self.objects(&mut starts);
             let token = self.window[0];
             match token.kind {
                 TokenKind::End => return,
@@ -179,6 +187,22 @@ impl<'t> Parser<'t> {
                         .report(error.help("an entity is written `type name { attributes }`"));
                     self.skip_block();
                 }
+            }
+        }
+    }
+
+    /// Takes the objects that come next, if they are many and there is nothing to say about them; but for the last one,
+    /// so that what follows it is looked at here.
+    fn objects(&mut self, starts: &mut Starts) {
+        let parallel = starts.is_parallel();
+        if let Some(objects) = starts.objects_from(self.window[0].start)
+            && let Some(last) = objects.last()
+            && self.errors.is_empty()
+        {
+            let reader = Reader::new(self.text, &self.materials, &self.textures, parallel);
+            if reader.read(objects, &mut self.assembly.objects) {
+                self.lexer = Lexer::at(self.text, *last as usize);
+                self.window = std::array::from_fn(|_| self.lexer.token());
             }
         }
     }
@@ -352,3 +376,6 @@ impl<'t> Parser<'t> {
             .report(Diagnostic::new(end..end, message).help(help));
     }
 }
+
+#[cfg(test)]
+mod tests;

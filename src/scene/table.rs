@@ -89,13 +89,11 @@ pub(super) const MAX_ROWS: usize = 8;
 
 /// The entity type of this name.
 pub(super) fn find(name: &[u8]) -> Option<&'static Entity> {
-    let mut known = ENTITIES
-        .iter()
-        .filter(|entity| !UNSUPPORTED.contains(&entity.name));
-    known.find(|entity| {
+    let found = ENTITIES.iter().find(|entity| {
         let mut names = entity.other_name.into_iter().chain([entity.name]);
         names.any(|own| own.as_bytes() == name)
-    })
+    });
+    found.filter(|entity| !UNSUPPORTED.contains(&entity.name))
 }
 
 /// The entity type that makes this.

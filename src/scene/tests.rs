@@ -373,24 +373,3 @@ fn ids_of_another_builder_are_told() {
             .contains("another builder")
     );
 }
-
-#[test]
-fn what_can_be_changed_alone_is_in_no_relation() {
-    use crate::edit::{Measure, Reflectivity, Target};
-    let mut changeable = vec![Target::Viewpoint, Target::Light(0)];
-    changeable.extend(Reflectivity::ALL.map(|which| Target::Material(0, which)));
-    changeable.extend([Measure::Center, Measure::Radius].map(|which| Target::Sphere(0, which)));
-    let related: Vec<&str> = table::ENTITIES
-        .iter()
-        .flat_map(|entity| entity.relations)
-        .flat_map(|relation| {
-            [relation.attribute]
-                .into_iter()
-                .chain(relation.others.iter().copied())
-        })
-        .collect();
-    assert!(related.contains(&"xdir") && related.contains(&"location"));
-    for target in changeable {
-        assert!(!related.contains(&target.attribute()), "{target:?}");
-    }
-}

@@ -61,7 +61,8 @@ impl<'t> Parser<'t> {
         let entity = block.entity;
         let mut way = block.way.as_ref().map(|(way, _)| *way);
         if way.is_none() && entity.spelt(key.text).nth(1).is_some() {
-            way = entity.way_of(self.keys_ahead().into_iter());
+            let ahead = keys_ahead(self.text, self.window[0].start);
+            way = entity.way_of(ahead.into_iter());
         }
         let (index, row, own) = entity.spelt_in(way, key.text)?;
         // What is given twice is told as that.
@@ -87,25 +88,6 @@ impl<'t> Parser<'t> {
             None => block.way = Some((own, key.span())),
         }
         Some((index, row))
-    }
-
-    /// The attributes in the rest of this block, as far as their spelling can matter.
-    fn keys_ahead(&self) -> Vec<&'t [u8]> {
-        let mut lexer = Lexer::at(self.text, self.window[0].start);
-        let mut keys = Vec::new();
-        let mut token = lexer.token();
-        for _ in 0..MOST_TOKENS {
-            if !token.is_word() {
-                break;
-            }
-            let next = lexer.token();
-            // A name may be any word, and an attribute's own name follows it.
-            if next.is_word() && looks_numeric(next.text) && !looks_numeric(token.text) {
-                keys.push(token.text);
-            }
-            token = next;
-        }
-        keys
     }
 
     /// Complains about an attribute that the entity does not have; returns what it was meant to be, if that is plain.
@@ -350,6 +332,25 @@ impl<'t> Parser<'t> {
         }
         Some(first)
     }
+}
+
+/// The attributes in the rest of the block that goes on at this byte, as far as their spelling can matter.
+pub(super) fn keys_ahead(text: &[u8], at: usize) -> Vec<&[u8]> {
+    let mut lexer = Lexer::at(text, at);
+    let mut keys = Vec::new();
+    let mut token = lexer.token();
+    for _ in 0..MOST_TOKENS {
+        if !token.is_word() {
+            break;
+        }
+        let next = lexer.token();
+        // A name may be any word, and an attribute's own name follows it.
+        if next.is_word() && looks_numeric(next.text) && !looks_numeric(token.text) {
+            keys.push(token.text);
+        }
+        token = next;
+    }
+    keys
 }
 
 /// The row that a misspelt attribute means.

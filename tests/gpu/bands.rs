@@ -232,7 +232,7 @@ fn stored(scene: &Scene, settings: &Settings, for_a_file: bool) -> Vec<(Vec<u8>,
         jitter: &jitter,
         band_rows: Some(17),
         // So short that rectangles are cut by columns.
-        dispatch_seconds: 1e-5,
+        dispatch_seconds: 1e-4,
         canvas: None,
     };
     let mut stored = Vec::new();
@@ -259,8 +259,13 @@ fn stored(scene: &Scene, settings: &Settings, for_a_file: bool) -> Vec<(Vec<u8>,
 /// the width: the same bytes, and the same of them in doubt.
 #[test]
 fn both_forms_of_pixels_hold_the_same() {
-    for name in SCENES {
-        for pixeldim in [[93, 71], [1, 40], [16, 9], [333, 5], [640, 33]] {
+    let kinds = [
+        "notes/walls.txt",
+        "gallery/procedural_all.txt",
+        "lit/mirror_and_glass.txt",
+    ];
+    for name in kinds {
+        for pixeldim in [[93, 31], [1, 40], [333, 5]] {
             let scene = Scene {
                 camera: Camera {
                     pixeldim,
@@ -268,11 +273,7 @@ fn both_forms_of_pixels_hold_the_same() {
                 },
                 ..scene(name)
             };
-            for (samples, jitter) in [
-                (1, SamplePattern::Hash),
-                (3, SamplePattern::Hash),
-                (3, SamplePattern::Course),
-            ] {
+            for (samples, jitter) in [(1, SamplePattern::Hash), (3, SamplePattern::Course)] {
                 let settings = Settings {
                     samples,
                     jitter,

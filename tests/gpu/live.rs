@@ -1,8 +1,8 @@
 //! Pictures rendered for a window: on a device that is open, onto a canvas on the GPU, given up when nobody wants them.
 //! Needs an adapter, and fails without one.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, mpsc};
 
 use plumb::certify::DecidedBy;
 use plumb::gpu::adapters;
@@ -233,4 +233,75 @@ fn pictures_of_a_moving_camera_are_right() {
             );
         }
     }
+}
+
+/// Takes a driver that computes on the CPU seconds, in one dispatch.
+const LONG: &str = "
+@group(0) @binding(0) var<storage, read_write> results: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    var x = id.x;
+    for (var i = 0u; i < 60000u; i++) {
+        x = (x ^ (x >> 7u)) * 1664525u + 1013904223u;
+    }
+    results[id.x % 64u] = x;
+}
+";
+
+/// Where a driver works off what it is given in order, on the CPU, the window is drawn by a device of its own: frames
+/// come to their end while a dispatch is under way. Elsewhere it is the same device, and pictures stay on it.
+#[test]
+fn frames_of_a_window_do_not_wait_for_a_dispatch_on_the_cpu() {
+    let renderer = adapters::open_for_window(None).unwrap();
+    let window = adapters::open_beside(&renderer, None).unwrap();
+    let shared = Arc::ptr_eq(&renderer.gpu, &window.gpu);
+    let on_cpu = renderer.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    assert_eq!(shared, !on_cpu);
+    assert_eq!(renderer.gpu.identity, window.gpu.identity);
+    if shared {
+        return;
+    }
+    let results = |gpu: &Gpu| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 256,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    };
+    let order = Mutex::new(Vec::new());
+    let (began, begins) = mpsc::channel();
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let gpu = &renderer.gpu;
+            let pipeline = gpu.compile(LONG, "main").unwrap();
+            let results = results(gpu);
+            let group = gpu.bind(&pipeline, &[(0, &results)]);
+            // The driver compiles when the first dispatch comes.
+            gpu.run_once(&pipeline, &group, [1, 1], &results).unwrap();
+            began.send(()).unwrap();
+            gpu.run_once(&pipeline, &group, [20_000, 1], &results)
+                .unwrap();
+            order.lock().unwrap().push("rendered");
+        });
+        begins.recv().unwrap();
+        // The dispatch is in the driver by then.
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        let gpu = &window.gpu;
+        let drawn = results(gpu);
+        for _ in 0..3 {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            encoder.clear_buffer(&drawn, 0, None);
+            let index = gpu.submit(encoder);
+            gpu.wait(index).unwrap();
+            order.lock().unwrap().push("a frame");
+        }
+    });
+    assert_eq!(
+        order.into_inner().unwrap(),
+        ["a frame", "a frame", "a frame", "rendered"]
+    );
 }

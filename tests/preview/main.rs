@@ -11,9 +11,11 @@
 mod clipboard;
 #[path = "../common/mod.rs"]
 mod common;
+mod edits;
 mod follows;
 mod hands;
 mod harness;
+mod monkey;
 mod program;
 mod shots;
 mod times;

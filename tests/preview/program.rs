@@ -72,12 +72,46 @@ impl<'d> Program<'d> {
         self.process.said()
     }
 
+    /// What it printed from this byte on.
+    pub(crate) fn said_from(&self, start: usize) -> String {
+        let said = self.process.said.lock().unwrap();
+        String::from_utf8_lossy(&said[start..]).into_owned()
+    }
+
+    /// The number of its process.
+    pub(crate) fn number(&self) -> u32 {
+        self.process.child.id()
+    }
+
+    /// How it ended, if it has.
+    pub(crate) fn has_ended(&mut self) -> Option<ExitStatus> {
+        self.process.child.try_wait().unwrap()
+    }
+
     /// The memory that it has, in KiB (VmRSS).
     pub(crate) fn memory(&self) -> u64 {
+        self.memory_if_there().unwrap()
+    }
+
+    /// The same; none if it has ended.
+    pub(crate) fn memory_if_there(&self) -> Option<u64> {
         let path = format!("/proc/{}/status", self.process.child.id());
-        let status = fs::read_to_string(path).unwrap();
-        let line = status.lines().find(|l| l.starts_with("VmRSS:")).unwrap();
-        line.split_whitespace().nth(1).unwrap().parse().unwrap()
+        let status = fs::read_to_string(path).ok()?;
+        let line = status.lines().find(|l| l.starts_with("VmRSS:"))?;
+        line.split_whitespace().nth(1)?.parse().ok()
+    }
+
+    /// The seconds that its threads computed so far, all together.
+    pub(crate) fn cpu_seconds(&self) -> f64 {
+        let path = format!("/proc/{}/stat", self.process.child.id());
+        let stat = fs::read_to_string(path).unwrap();
+        // Behind the name in parentheses the fields are numbered from 3: 14 and 15 are ticks, of which 100 are a second.
+        let (_, fields) = stat.rsplit_once(") ").unwrap();
+        let ticks = fields.split(' ').skip(14 - 3).take(2);
+        ticks
+            .map(|ticks| ticks.parse::<f64>().unwrap())
+            .sum::<f64>()
+            / 100.0
     }
 
     /// Closes the window as a user does, and waits for the end.

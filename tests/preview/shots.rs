@@ -72,3 +72,36 @@ fn shots() {
     save(&program, "mistake.png");
     program.close();
 }
+
+#[test]
+#[ignore = "writes the pictures of the documentation"]
+fn shots_of_what_is_changed() {
+    let display = Display::start(1400, 900);
+    let shot = |scene: &str, at: (i32, i32), over: (i32, i32), name: &str| {
+        let file = File::new(&fs::read_to_string(common::scenes().join(scene)).unwrap());
+        let mut program = open(&display, &file.path, &["--size", "600x400"]);
+        program.window.resize(900, 700);
+        rest(&mut program);
+        program.window.click(at.0, at.1);
+        // A click is where the mouse is in the window's next frame.
+        std::thread::sleep(Duration::from_millis(700));
+        program.window.move_to(over.0, over.1);
+        rest(&mut program);
+        save(&program, name);
+        program.close();
+    };
+    // The first spotlight of the list.
+    shot(
+        "lit/spotlight_stage.txt",
+        (700, 366),
+        (5, 5),
+        "spotlight.png",
+    );
+    // A chessman, by a click on it.
+    shot(
+        "gallery/quadric_chess.txt",
+        (300, 260),
+        (5, 5),
+        "quadric.png",
+    );
+}

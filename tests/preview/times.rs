@@ -33,7 +33,7 @@ fn times() {
     let mut changes = Changes::new();
     let mut other = scene.camera.viewpoint;
     other.x += scene.camera.worlddim.x / 8.0;
-    changes.set(Target::Viewpoint, other).unwrap();
+    changes.set(&scene, Target::VIEWPOINT, other).unwrap();
     let texts =
         [text.clone(), changes.write(&text).unwrap()].map(|text| String::from_utf8(text).unwrap());
     let file = File::new(&texts[0]);
@@ -123,5 +123,96 @@ fn times() {
         (after.0 - before.0) as f64 / elapsed,
         100.0 - 100.0 * (after.1 - before.1) as f64 / (after.0 - before.0).max(1) as f64
     );
+    assert_eq!(program.close().status.code(), Some(0));
+}
+
+/// The scene whose pictures take long.
+fn showcase() -> PathBuf {
+    std::env::var_os("PLUMB_PREVIEW_SCENE")
+        .map_or_else(|| common::scenes().join("showcase.txt"), PathBuf::from)
+}
+
+/// So many keys are struck while a picture is rendered.
+const KEYS: usize = 200;
+
+/// From striking a key to what it does being on the screen, while a picture is rendered that takes long.
+#[test]
+#[ignore = "measures"]
+fn times_from_input_to_screen() {
+    let path = showcase();
+    let display = Display::start(1500, 1000);
+    let options = ["--size", "1920x1080", "--samples", "16"];
+    let mut command = command(&path, &options);
+    command.env("RUST_LOG", "error,plumb=info");
+    let mut program = Program::start(&display, command);
+    program.wait("a first picture", |window| {
+        window.title().contains("fast").then_some(())
+    });
+    program.window.focus();
+    // The margin of the panel on the right, which a key opens and closes.
+    let (x, y) = (program.window.size().0 - 3, 60);
+    let look = |program: &mut Program<'_>| program.wait("a pixel", |window| window.pixel(x, y));
+    let open = look(&mut program);
+    program.window.key('o'.into(), &[]);
+    let closed = program.wait("no panel", |window| {
+        window.pixel(x, y).filter(|seen| *seen != open)
+    });
+    let mut seconds = Vec::new();
+    let mut random = 1_u64;
+    while seconds.len() < KEYS && !program.window.title().contains("certified") {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        std::thread::sleep(Duration::from_millis(20 + (random >> 33) % 100));
+        // The mouse is on the picture, and is moved now and then.
+        let at = (random >> 40) as i32;
+        program.window.move_to(100 + at % 300, 100 + at / 300 % 300);
+        let wanted = [open, closed][seconds.len() % 2];
+        let start = Instant::now();
+        program.window.key('o'.into(), &[]);
+        while program.window.pixel(x, y) != Some(wanted) {
+            assert!(
+                start.elapsed() < Duration::from_secs(120),
+                "{}",
+                program.said()
+            );
+            std::thread::sleep(Duration::from_micros(500));
+        }
+        seconds.push(start.elapsed().as_secs_f64());
+    }
+    let count = seconds.len();
+    seconds.sort_by(f64::total_cmp);
+    let at = |part: f64| 1e3 * seconds[((count - 1) as f64 * part).round() as usize];
+    println!(
+        "{}: {count} keys while it is rendered: median {:.0} ms, 90 % below {:.0} ms, 99 % below {:.0} ms, most {:.0} ms",
+        path.display(),
+        at(0.5),
+        at(0.9),
+        at(0.99),
+        at(1.0)
+    );
+    assert_eq!(program.close().status.code(), Some(0));
+}
+
+/// What the first pictures cost where nothing moves.
+#[test]
+#[ignore = "measures"]
+fn times_of_the_first_pictures() {
+    let path = showcase();
+    let display = Display::start(1500, 1000);
+    let mut command = command(&path, &["--size", "1920x1080"]);
+    command.env("RUST_LOG", "error,plumb=info");
+    let start = Instant::now();
+    let mut program = Program::start(&display, command);
+    for kind in ["fast", "certified"] {
+        program.wait(kind, |window| window.title().ends_with(kind).then_some(()));
+        println!(
+            "{}: {kind} after {:.1} s, {:.1} CPU-seconds",
+            path.display(),
+            start.elapsed().as_secs_f64(),
+            program.cpu_seconds()
+        );
+    }
+    print!("{}", program.said());
     assert_eq!(program.close().status.code(), Some(0));
 }

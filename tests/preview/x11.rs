@@ -187,9 +187,14 @@ impl Window<'_> {
 
     /// Width and height.
     pub(crate) fn size(&self) -> (u32, u32) {
+        self.size_if_there().unwrap()
+    }
+
+    /// Width and height; none if it is gone.
+    pub(crate) fn size_if_there(&self) -> Option<(u32, u32)> {
         let geometry = self.display.connection.get_geometry(self.id).unwrap();
-        let geometry = geometry.reply().unwrap();
-        (geometry.width.into(), geometry.height.into())
+        let geometry = geometry.reply().ok()?;
+        Some((geometry.width.into(), geometry.height.into()))
     }
 
     /// The pixels as they are on the screen; none if the window changed while they were fetched, is gone, or is partly
@@ -232,7 +237,7 @@ impl Window<'_> {
         assert_eq!(masks, (0xff_0000, 0xff00, 0xff));
     }
 
-    /// Gives it this size, and the place at the top left of the screen.
+    /// Gives it this size, and the place at the top left of the screen; nothing happens if it is gone.
     pub(crate) fn resize(&self, width: u32, height: u32) {
         let aux = ConfigureWindowAux::new()
             .x(0)
@@ -244,7 +249,7 @@ impl Window<'_> {
             .configure_window(self.id, &aux)
             .unwrap()
             .check()
-            .unwrap();
+            .ok();
     }
 
     /// Sends it what is typed from now on.
@@ -286,11 +291,13 @@ impl Window<'_> {
         }
     }
 
-    /// Moves the mouse there at once.
+    /// Moves the mouse there at once; nothing happens if the window is gone.
     pub(crate) fn move_to(&self, x: i32, y: i32) {
         let connection = &self.display.connection;
         let at = connection.translate_coordinates(self.id, self.display.root, 0, 0);
-        let at = at.unwrap().reply().unwrap();
+        let Ok(at) = at.unwrap().reply() else {
+            return;
+        };
         let (x, y) = (x + i32::from(at.dst_x), y + i32::from(at.dst_y));
         self.display.fake(MOTION_NOTIFY_EVENT, 0, x, y);
     }
@@ -334,7 +341,7 @@ impl Window<'_> {
         }
     }
 
-    /// Asks it to close, as the cross in a window's frame does.
+    /// Asks it to close, as the cross in a window's frame does; one that is gone is not asked.
     pub(crate) fn ask_to_close(&self) {
         let (kind, what) = ("WM_PROTOCOLS", "WM_DELETE_WINDOW");
         let data = [self.display.atom(what), x11rb::CURRENT_TIME, 0, 0, 0];
@@ -344,7 +351,7 @@ impl Window<'_> {
             .send_event(false, self.id, EventMask::NO_EVENT, event)
             .unwrap()
             .check()
-            .unwrap();
+            .ok();
     }
 
     /// The bytes of a property, in the machine's order.

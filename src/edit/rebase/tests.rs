@@ -1,11 +1,7 @@
 //! Tests of changes whose file is edited under them.
 
-use super::super::target::{Measure, Reflectivity};
 use super::*;
 use crate::scene::parse_text;
-
-use Measure::{Center, Radius};
-use Reflectivity::{Ambient, Diffuse};
 
 const CAMERA: &str = "camera c { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\n";
 const RED: &str = "material red { ambient 1 1 1 diffuse 2 2 2 }\n";
@@ -18,12 +14,31 @@ fn scene(parts: &[&str]) -> Scene {
 
 /// Changes of everything in a scene of the four above.
 fn changes() -> Changes {
+    let scene = &scene(&[CAMERA, RED, BALL, LAMP]);
     let mut changes = Changes::new();
-    changes.set(Target::Viewpoint, [1.0, 1.0, 1.0]).unwrap();
-    changes.set(Target::Material(0, Diffuse), [0.5; 3]).unwrap();
-    changes.set(Target::Sphere(0, Center), [7.0; 3]).unwrap();
-    changes.set(Target::Sphere(0, Radius), 7.0).unwrap();
-    changes.set(Target::Light(0), [9.0; 3]).unwrap();
+    changes
+        .set(scene, Target::VIEWPOINT, [1.0, 1.0, 1.0])
+        .unwrap();
+    changes
+        .set(
+            scene,
+            Target::new(EntityId::Material(0), "diffuse"),
+            [0.5; 3],
+        )
+        .unwrap();
+    changes
+        .set(scene, Target::new(EntityId::Object(0), "center"), [7.0; 3])
+        .unwrap();
+    changes
+        .set(scene, Target::new(EntityId::Object(0), "radius"), 7.0)
+        .unwrap();
+    changes
+        .set(
+            scene,
+            Target::new(EntityId::Light(0), "emissivity"),
+            [9.0; 3],
+        )
+        .unwrap();
     changes
 }
 
@@ -66,11 +81,11 @@ fn changes_move_with_their_entities() {
     let other = "material blue { ambient 1 1 1 diffuse 2 2 2 }\nsphere globe { material blue center 1 2 3 radius 1 }\n\
                  spotlight lamp { location 0 0 0 emissivity 1 1 1 point 1 1 1 theta 5 }\n";
     let moved = vec![
-        Target::Viewpoint,
-        Target::Material(1, Diffuse),
-        Target::Sphere(1, Center),
-        Target::Sphere(1, Radius),
-        Target::Light(1),
+        Target::VIEWPOINT,
+        Target::new(EntityId::Material(1), "diffuse"),
+        Target::new(EntityId::Object(1), "center"),
+        Target::new(EntityId::Object(1), "radius"),
+        Target::new(EntityId::Light(1), "emissivity"),
     ];
     assert_eq!(after(&[other, CAMERA, RED, BALL, LAMP]), (moved, vec![]));
 }
@@ -83,7 +98,10 @@ fn the_file_counts_where_it_was_changed_too() {
     assert_eq!(
         after(&[&camera, &red, &ball, LAMP]),
         (
-            vec![Target::Sphere(0, Radius), Target::Light(0)],
+            vec![
+                Target::new(EntityId::Object(0), "radius"),
+                Target::new(EntityId::Light(0), "emissivity")
+            ],
             vec![
                 "camera `c`: viewpoint was changed in the file, which counts".into(),
                 "material `red`: diffuse was changed in the file, which counts".into(),
@@ -100,7 +118,7 @@ fn what_is_gone_is_told() {
     assert_eq!(
         after(&[CAMERA, &red, &marble]),
         (
-            vec![Target::Viewpoint],
+            vec![Target::VIEWPOINT],
             vec![
                 "material `red`: diffuse was changed in the file, which counts".into(),
                 "sphere `ball` is no longer in the file, and what was changed of its center is lost".into(),
@@ -120,9 +138,18 @@ fn what_was_saved_is_dropped_without_a_word() {
     assert_eq!(changes.rebase(&old, &new), []);
     assert!(changes.is_empty());
     // A value that was changed again while the file was saved stays changed.
-    changes.set(Target::Light(0), [8.0; 3]).unwrap();
+    changes
+        .set(
+            &new,
+            Target::new(EntityId::Light(0), "emissivity"),
+            [8.0; 3],
+        )
+        .unwrap();
     assert_eq!(changes.rebase(&new, &new), []);
-    assert_eq!(changes.get(Target::Light(0)), Some([8.0; 3].into()));
+    assert_eq!(
+        changes.get(Target::new(EntityId::Light(0), "emissivity")),
+        Some([8.0; 3].into())
+    );
 }
 
 #[test]
@@ -132,8 +159,20 @@ fn equal_names_are_told_apart_by_their_order() {
     let (first, second, third) = (material("m", 1.0), material("m", 2.0), material("m", 3.0));
     let old = scene(&[CAMERA, &first, &second, &third]);
     let mut start = Changes::new();
-    start.set(Target::Material(1, Ambient), [9.0; 3]).unwrap();
-    start.set(Target::Material(2, Ambient), [8.0; 3]).unwrap();
+    start
+        .set(
+            &old,
+            Target::new(EntityId::Material(1), "ambient"),
+            [9.0; 3],
+        )
+        .unwrap();
+    start
+        .set(
+            &old,
+            Target::new(EntityId::Material(2), "ambient"),
+            [8.0; 3],
+        )
+        .unwrap();
     let mut changes = start.clone();
     let new = scene(&[
         &material("n", 2.0),
@@ -145,8 +184,12 @@ fn equal_names_are_told_apart_by_their_order() {
     ]);
     assert_eq!(changes.rebase(&old, &new), []);
     let left: Vec<_> = changes.iter().collect();
-    let moved = [(3, 9.0), (4, 8.0)]
-        .map(|(index, value)| (Target::Material(index, Ambient), [value; 3].into()));
+    let moved = [(3, 9.0), (4, 8.0)].map(|(index, value)| {
+        (
+            Target::new(EntityId::Material(index), "ambient"),
+            [value; 3].into(),
+        )
+    });
     assert_eq!(left, moved);
     // Without the first, the third is the second, and what is said of it is not what the file said.
     let mut changes = start;
@@ -159,11 +202,11 @@ fn equal_names_are_told_apart_by_their_order() {
         told,
         [
             (
-                Target::Material(1, Ambient),
+                Target::new(EntityId::Material(1), "ambient"),
                 "material `m`: ambient was changed in the file, which counts"
             ),
             (
-                Target::Material(2, Ambient),
+                Target::new(EntityId::Material(2), "ambient"),
                 "material `m` is no longer in the file, and what was changed of its ambient is lost"
             ),
         ]
@@ -175,7 +218,9 @@ fn equal_names_are_told_apart_by_their_order() {
 fn changes_of_nothing_are_told_and_dropped() {
     let scene = scene(&[CAMERA]);
     let mut changes = Changes::new();
-    changes.set(Target::Light(3), [1.0; 3]).unwrap();
+    let light = Target::new(EntityId::Light(3), "emissivity");
+    assert!(changes.set(&scene, light, [1.0; 3]).is_err());
+    changes.values.insert(light, [1.0; 3].into());
     assert_eq!(changes.apply(&scene), scene);
     let dropped = changes.rebase(&scene, &scene);
     assert_eq!(
@@ -183,6 +228,45 @@ fn changes_of_nothing_are_told_and_dropped() {
         "something is no longer in the file, and what was changed of its emissivity is lost"
     );
     assert!(changes.is_empty());
+}
+
+#[test]
+fn what_contradicts_the_file_is_dropped() {
+    let floor = |normal: &str| {
+        format!(
+            "fplane floor {{ material red normal {normal} point 0 0 0 xdir 0 0 1 dimensions 1 1 }}"
+        )
+    };
+    let old = scene(&[CAMERA, RED, &floor("0 1 0")]);
+    let xdir = Target::new(EntityId::Object(0), "xdir");
+    let mut changes = Changes::new();
+    changes.set(&old, xdir, [1.0, 0.0, 0.0]).unwrap();
+    let earlier = changes.clone();
+    // What the file says now is parallel to it, which each of the two is not by itself.
+    let new = scene(&[CAMERA, RED, &floor("2 0 0")]);
+    let told: Vec<_> = changes.rebase(&old, &new);
+    assert_eq!(
+        told[0].to_string(),
+        "fplane `floor`: what was changed of its xdir contradicts the file, which counts: `xdir` must not be parallel \
+         to `normal`: it is projected onto the plane"
+    );
+    assert_eq!((told.len(), changes.is_empty()), (1, true));
+    let mut earlier = [earlier];
+    Changes::rebase_earlier(earlier.iter_mut(), &old, &new);
+    assert!(earlier[0].is_empty());
+}
+
+#[test]
+fn earlier_changes_count_and_not_the_file() {
+    let old = scene(&[CAMERA, RED, BALL, LAMP]);
+    let new = scene(&[RED, &BALL.replace("radius 1", "radius 2"), CAMERA]);
+    let mut earlier = [changes(), Changes::new()];
+    Changes::rebase_earlier(earlier.iter_mut(), &old, &new);
+    let radius = Target::new(EntityId::Object(0), "radius");
+    let light = Target::new(EntityId::Light(0), "emissivity");
+    assert_eq!(earlier[0].get(radius), Some(7.0.into()));
+    assert_eq!((earlier[0].len(), earlier[0].get(light)), (4, None));
+    assert!(earlier[1].is_empty());
 }
 
 #[test]
@@ -197,7 +281,11 @@ fn a_large_scene_takes_no_square_of_its_size() {
     let mut changes = Changes::new();
     for index in 0..COUNT {
         changes
-            .set(Target::Sphere(index, Radius), 2.0 + index as f64)
+            .set(
+                &old,
+                Target::new(EntityId::Object(index), "radius"),
+                2.0 + index as f64,
+            )
             .unwrap();
     }
     assert_eq!(changes.rebase(&old, &new), []);
@@ -206,7 +294,7 @@ fn a_large_scene_takes_no_square_of_its_size() {
         assert_eq!(
             (target, value),
             (
-                Target::Sphere(place + 1, Radius),
+                Target::new(EntityId::Object(place + 1), "radius"),
                 (2.0 + place as f64).into()
             )
         );

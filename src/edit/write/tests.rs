@@ -1,17 +1,16 @@
 //! Tests of writing changes: what a text looks like afterwards, to the byte. That it means what it should is tested for
 //! all scenes in [`edit`](crate::edit)'s own tests.
 
-use super::super::target::{Measure, Value};
+use super::super::target::Value;
 use super::*;
 
 const CAMERA: &str = "camera c { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6.0 } ";
 
-use Reflectivity::{Ambient, Diffuse, Specular};
-
-fn changes<V: Into<Value>>(list: impl IntoIterator<Item = (Target, V)>) -> Changes {
+fn changes<V: Into<Value>>(text: &str, list: impl IntoIterator<Item = (Target, V)>) -> Changes {
+    let scene = parse_text("test", text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
     let mut changes = Changes::new();
     for (target, value) in list {
-        changes.set(target, value).unwrap();
+        changes.set(&scene, target, value).unwrap();
     }
     changes
 }
@@ -24,11 +23,12 @@ fn written(text: &str, changes: &Changes) -> String {
 }
 
 /// A text with a camera behind it, after reflectivities of its first material were changed.
-fn with(text: &str, list: &[(Reflectivity, [f64; 3])]) -> String {
+fn with(text: &str, list: &[(&'static str, [f64; 3])]) -> String {
     let list = list
         .iter()
-        .map(|(which, value)| (Target::Material(0, *which), *value));
-    let written = written(&(text.to_owned() + "\n" + CAMERA), &changes(list));
+        .map(|(which, value)| (Target::new(EntityId::Material(0), which), *value));
+    let text = text.to_owned() + "\n" + CAMERA;
+    let written = written(&text, &changes(&text, list));
     written
         .strip_suffix(&("\n".to_owned() + CAMERA))
         .unwrap()
@@ -54,7 +54,7 @@ fn only_the_numbers_that_change_are_exchanged() {
     for (before, after) in known {
         let block = |inside: &str| format!("# a {{ 2 }}\nmaterial a{{{inside}\n}} # {{");
         assert_eq!(
-            with(&block(before), &[(Ambient, [1.0, 0.5, 3.0])]),
+            with(&block(before), &[("ambient", [1.0, 0.5, 3.0])]),
             block(after)
         );
     }
@@ -63,26 +63,29 @@ fn only_the_numbers_that_change_are_exchanged() {
 #[test]
 fn a_value_that_is_in_the_file_changes_nothing() {
     let text = format!("material a {{ specular 0.50 }}\n{CAMERA}");
-    let same = changes([
-        (Target::Material(0, Specular), [0.5; 3]),
-        (Target::Material(0, Ambient), [0.0; 3]),
-        (Target::Viewpoint, [4.0, 3.0, 6.0]),
-    ]);
+    let same = changes(
+        &text,
+        [
+            (Target::new(EntityId::Material(0), "specular"), [0.5; 3]),
+            (Target::new(EntityId::Material(0), "ambient"), [0.0; 3]),
+            (Target::VIEWPOINT, [4.0, 3.0, 6.0]),
+        ],
+    );
     assert_eq!(written(&text, &same), text);
-    let other = changes([(Target::Viewpoint, [4.0, 3.0, 6.5])]);
+    let other = changes(&text, [(Target::VIEWPOINT, [4.0, 3.0, 6.5])]);
     assert_eq!(written(&text, &other), text.replace("6.0", "6.5"));
 }
 
 #[test]
 fn one_number_for_three_becomes_three_where_they_differ() {
     let text = |values: &str| format!("material a {{ specular {values}#x\n }}");
-    let after = |values: [f64; 3]| with(&text("0.50"), &[(Specular, values)]);
+    let after = |values: [f64; 3]| with(&text("0.50"), &[("specular", values)]);
     assert_eq!(after([0.5; 3]), text("0.50"));
     assert_eq!(after([0.25; 3]), text("0.25"));
     assert_eq!(after([0.25, 0.5, 1.0]), text("0.25 0.50 1"));
     // Three stay three.
     assert_eq!(
-        with(&text("1.0 2 3"), &[(Specular, [1.0; 3])]),
+        with(&text("1.0 2 3"), &[("specular", [1.0; 3])]),
         text("1.0 1 1")
     );
 }
@@ -153,16 +156,26 @@ fn attributes_are_added_in_the_layout_of_the_block() {
         ),
     ];
     for (before, after) in known {
-        assert_eq!(with(before, &[(Diffuse, [1.0, 2.0, 3.0])]), after);
+        assert_eq!(with(before, &[("diffuse", [1.0, 2.0, 3.0])]), after);
     }
+}
+
+#[test]
+fn numbers_are_added_to_a_material_in_the_order_of_the_table() {
+    let text = format!("material a {{ ambient 1 1 1 transparency 0.50 }} {CAMERA}");
+    let list = [("shininess", 5.0), ("transparency", 1.0)];
+    let list = list.map(|(name, value)| (Target::new(EntityId::Material(0), name), value));
+    let after = text.replace("transparency 0.50", "transparency 1");
+    let after = after.replace("1 1 1 ", "1 1 1 shininess 5 ");
+    assert_eq!(written(&text, &changes(&text, list)), after);
 }
 
 #[test]
 fn several_are_added_in_order() {
     let all = [
-        (Specular, [3.0; 3]),
-        (Ambient, [1.0; 3]),
-        (Diffuse, [2.0; 3]),
+        ("specular", [3.0; 3]),
+        ("ambient", [1.0; 3]),
+        ("diffuse", [2.0; 3]),
     ];
     let text = "material a\n{\n  shininess 5\n}";
     let after =
@@ -180,7 +193,13 @@ fn of_equal_names_the_one_that_is_meant_is_changed() {
             "material a {{ ambient 1 1 1 }} material a {{ ambient {second} }} material a {{ ambient 1 1 1 }} {CAMERA}"
         )
     };
-    let change = changes([(Target::Material(1, Ambient), [1.0, 2.0, 1.0])]);
+    let change = changes(
+        &text("1 1 1"),
+        [(
+            Target::new(EntityId::Material(1), "ambient"),
+            [1.0, 2.0, 1.0],
+        )],
+    );
     assert_eq!(written(&text("1 1 1"), &change), text("1 2 1"));
 }
 
@@ -199,16 +218,27 @@ fn spheres_and_lights_of_every_kind_are_written() {
         "emissivity 1 1 1",
         "emissivity 2 2 2",
     );
-    let mut change = changes([
-        (Target::Sphere(1, Measure::Radius), 3.0),
-        (Target::Sphere(2, Measure::Radius), 4.0),
-    ]);
+    let mut change = changes(
+        &old,
+        [
+            (Target::new(EntityId::Object(1), "radius"), 3.0),
+            (Target::new(EntityId::Object(2), "radius"), 4.0),
+        ],
+    );
     for (target, value) in [
-        (Target::Sphere(1, Measure::Center), [0.0, -1.0, 0.0]),
-        (Target::Light(0), [1.0, 0.0, 1.0]),
-        (Target::Light(1), [2.0, 2.0, 0.5]),
+        (Target::new(EntityId::Object(1), "center"), [0.0, -1.0, 0.0]),
+        (
+            Target::new(EntityId::Light(0), "emissivity"),
+            [1.0, 0.0, 1.0],
+        ),
+        (
+            Target::new(EntityId::Light(1), "emissivity"),
+            [2.0, 2.0, 0.5],
+        ),
     ] {
-        change.set(target, value).unwrap();
+        change
+            .set(&parse_text("old", old.as_bytes()).unwrap(), target, value)
+            .unwrap();
     }
     let new = text(
         "radius 3 center 0 -1 0",
@@ -224,15 +254,19 @@ fn what_cannot_be_written_is_told() {
     let good = format!(
         "{CAMERA} material m {{ ambient 1 1 1 }} plane p {{ material m normal 0 0 1 point 0 0 0 }}"
     );
+    let all = format!(
+        "{CAMERA} material m {{ ambient 1 1 1 }} material n {{ ambient 1 1 1 }}
+         sphere s {{ material m center 0 0 0 radius 2 }} light l {{ location 0 0 0 emissivity 0 0 0 }}"
+    );
     let fails = |target, value: Value, text: &str| {
-        let error = changes([(target, value)])
+        let error = changes(&all, [(target, value)])
             .write(text.as_bytes())
             .unwrap_err()
             .to_string();
         // The first line, and what the first complaint is.
         error.lines().take(2).collect::<Vec<_>>().join(" / ")
     };
-    let viewpoint = |text: &str| fails(Target::Viewpoint, [1.0, 1.0, 1.0].into(), text);
+    let viewpoint = |text: &str| fails(Target::VIEWPOINT, [1.0, 1.0, 1.0].into(), text);
     let twice = good.replace("normal", "point 1 1 1 normal");
     let mistake = "a scene with mistakes cannot be changed / error: ";
     assert_eq!(
@@ -249,21 +283,33 @@ fn what_cannot_be_written_is_told() {
     );
     assert!(viewpoint("\0\0").starts_with(mistake));
     assert_eq!(
-        fails(Target::Sphere(0, Measure::Radius), 1.0.into(), &good),
-        "radius cannot be written: this text has no sphere that is object number 1"
+        fails(
+            Target::new(EntityId::Object(0), "radius"),
+            1.0.into(),
+            &good
+        ),
+        "radius cannot be written: this text has no object number 1 with it"
     );
     assert_eq!(
-        fails(Target::Material(1, Ambient), [1.0; 3].into(), &good),
-        "ambient cannot be written: this text has no material number 2"
+        fails(
+            Target::new(EntityId::Material(1), "ambient"),
+            [1.0; 3].into(),
+            &good
+        ),
+        "ambient cannot be written: this text has no material number 2 with it"
     );
     assert_eq!(
-        fails(Target::Light(4), [1.0; 3].into(), &good),
-        "emissivity cannot be written: this text has no light number 5"
+        fails(
+            Target::new(EntityId::Light(0), "emissivity"),
+            [1.0; 3].into(),
+            &good
+        ),
+        "emissivity cannot be written: this text has no light number 1 with it"
     );
     // A picture that is not there is no mistake of the text.
     let texture = good.clone() + " texture t { filename no/such/file.ppm }";
     assert!(
-        changes([(Target::Viewpoint, [1.0; 3])])
+        changes(&good, [(Target::VIEWPOINT, [1.0; 3])])
             .write(texture.as_bytes())
             .is_ok()
     );

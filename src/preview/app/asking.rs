@@ -10,6 +10,7 @@ use crate::certify::verdict::meaning;
 use crate::preview::inspect::{Answer, Question};
 use crate::preview::screen::{ObjectMap, Outlined};
 use crate::preview::session;
+use crate::scene::EntityId;
 use crate::settings::Precision;
 
 impl App {
@@ -21,13 +22,19 @@ impl App {
                 pixel,
                 text,
             } => self.panel.explained = Some((number, pixel, text)),
+            Answer::Clicked { pixel, object } => {
+                // Another pixel may have been clicked meanwhile.
+                if self.clicked.take_if(|clicked| *clicked == pixel).is_some() {
+                    self.select(object.map(EntityId::Object));
+                }
+            }
             Answer::Objects {
                 number,
                 size,
                 objects,
             } => {
                 let buffer =
-                    self.gpu
+                    self.window
                         .device
                         .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                             label: Some("objects seen"),
@@ -49,14 +56,17 @@ impl App {
         let Some(picture) = &self.picture else {
             return;
         };
-        let pixel = self.panel.held.or(self.over).filter(|_| self.panel_open);
+        let explained = self.panel.held.or(self.over).filter(|_| self.panel_open);
+        let pixel = self.clicked.or(explained);
         let seen = self
             .seen
             .as_ref()
             .is_some_and(|(number, _)| *number == picture.number);
-        let objects = (self.side.hovered.is_some() || self.side.selected.is_some()) && !seen;
+        let objects =
+            (self.side.hovered.is_some() || self.side.selection.entity().is_some()) && !seen;
         let still = picture.precision == Precision::Certified;
-        let question = (picture.number, pixel, [still, objects]);
+        let clicked = self.clicked.is_some();
+        let question = (picture.number, pixel, [still, objects, clicked]);
         if (pixel.is_none() && !objects) || self.asked == Some(question) {
             return;
         }
@@ -67,13 +77,14 @@ impl App {
             name: self.shared.lock().session.name(),
             pixel,
             still,
+            clicked,
             objects,
         });
     }
 
     /// Outlines what is under the cursor in the lists, or was clicked there.
     pub(super) fn outline(&mut self) {
-        let entity = self.side.hovered.or(self.side.selected);
+        let entity = self.side.hovered.or(self.side.selection.entity());
         let (Some(entity), Some(picture), Some((number, seen))) =
             (entity, &self.picture, &self.seen)
         else {
@@ -97,7 +108,7 @@ impl App {
             }
         }
         let chosen = self
-            .gpu
+            .window
             .device
             .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("chosen objects"),

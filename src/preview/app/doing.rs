@@ -1,43 +1,95 @@
-//! What keys, mouse and panels ask for, done.
+//! What keys and panels ask for, done.
 
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use eframe::egui::{self, Context};
 use glam::DVec3;
 
 use super::{App, Event};
 use crate::edit::{Target, Value, camera_block};
-use crate::preview::keys::Command;
+use crate::preview::keys::{self, Command};
 use crate::preview::overlay::SaveAs;
-use crate::preview::picture::{self, Mouse};
+use crate::preview::picture;
+use crate::preview::priority;
 use crate::preview::save;
+use crate::preview::selection::Selection;
 use crate::preview::session;
 use crate::preview::side::Wanted;
+use crate::preview::undo::{Direction, Step};
 use crate::preview::viewport::{self, Area, Viewport};
-use crate::scene::{self, LoadError, Scene};
+use crate::scene::{self, EntityId, LoadError, Scene};
 
 impl App {
+    /// The keys that were struck since the last frame, unless something is asked.
+    pub(super) fn take_keys(&mut self, context: &Context) {
+        let presses = context.input(|input| {
+            let is_press = |event: &&egui::Event| {
+                matches!(event, egui::Event::PointerButton { pressed: true, .. })
+            };
+            input.events.iter().filter(is_press).count()
+        });
+        self.presses += presses as u64;
+        let mut commands = std::mem::take(&mut self.deferred);
+        if self.save_as.is_none() && !self.leaving.asks() {
+            self.deferred = keys::leaves_field(context);
+            if self.deferred.is_empty() {
+                commands.extend(keys::pressed(context));
+            }
+        }
+        for command in commands {
+            self.obey(context, command);
+        }
+    }
+
     /// The viewpoint as it is shown, and the scene as the file has it.
     fn viewpoint(&self) -> Option<(DVec3, Arc<Scene>)> {
         let state = self.shared.lock();
         let scene = Arc::clone(state.session.wanted()?.0);
-        match state.session.value(Target::Viewpoint)? {
-            Value::Vector(viewpoint) => Some((viewpoint, scene)),
-            Value::Number(_) => None,
-        }
+        let viewpoint = state.session.value(Target::VIEWPOINT)?.vector()?;
+        Some((viewpoint, scene))
     }
 
-    fn move_viewpoint(&mut self, to: impl FnOnce(DVec3, &Scene) -> DVec3) {
+    pub(super) fn move_viewpoint(&mut self, to: impl FnOnce(DVec3, &Scene) -> DVec3) {
         if let Some((viewpoint, scene)) = self.viewpoint() {
-            self.set(Target::Viewpoint, to(viewpoint, &scene).into());
+            self.set(Target::VIEWPOINT, to(viewpoint, &scene).into());
         }
     }
 
-    fn set(&mut self, target: Target, value: Value) {
+    /// Changes a number: while a button of the mouse is held, in one step.
+    pub(super) fn set(&mut self, target: Target, value: Value) {
+        let is_held = self.teller.context.input(|input| {
+            let pointer = &input.pointer;
+            pointer.any_down() || pointer.any_released()
+        });
+        let step = if is_held {
+            Step::Held(target, self.presses)
+        } else {
+            Step::Run(target, Instant::now())
+        };
         let mut state = self.shared.lock();
-        state.change(|session| session.set(target, value));
+        state.change(|session| session.set(target, value, step));
+    }
+
+    /// Takes a step back, or forward again.
+    fn step(&mut self, direction: Direction) {
+        self.grabbed = None;
+        self.shared
+            .lock()
+            .change(|session| session.step_back(direction));
+    }
+
+    /// Selects something, and shows it in the lists.
+    pub(super) fn select(&mut self, entity: Option<EntityId>) {
+        let state = self.shared.lock();
+        if let Some(good) = state.session.good() {
+            self.side.selection.select(&good.scene, entity);
+            let title = entity.and_then(|entity| session::title(&good.scene, entity));
+            let (kind, name) = title.unwrap_or(("nothing", ""));
+            log::info!("selected {kind} {name}");
+        }
     }
 
     fn discard(&mut self, target: Option<Target>) {
@@ -52,7 +104,7 @@ impl App {
             Command::Away(steps) => self.move_viewpoint(|viewpoint, scene| {
                 viewport::moved_away(&scene.camera, viewpoint, steps)
             }),
-            Command::Reset => self.discard(Some(Target::Viewpoint)),
+            Command::Reset => self.discard(Some(Target::VIEWPOINT)),
             Command::Fit => self.showing.viewport = Viewport::Fit,
             Command::OneToOne => self.zoom(context, |viewport, at, area, size| {
                 viewport.zoom_to(1.0, at, area, size);
@@ -66,9 +118,11 @@ impl App {
             Command::Escape => {
                 self.panel.held = None;
                 self.help_open = false;
-                self.side.selected = None;
+                self.side.selection = Selection::default();
             }
             Command::CopyCamera => self.copy_camera(context),
+            Command::Undo => self.step(Direction::Undo),
+            Command::Redo => self.step(Direction::Redo),
             Command::SaveChanges => self.save_changes(),
             Command::SavePicture => self.ask_where(),
             Command::Reload => self.reload(),
@@ -81,7 +135,7 @@ impl App {
                 });
             }
             Command::Help => self.help_open ^= true,
-            Command::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::Quit => self.leaving.ask(),
         }
     }
 
@@ -127,11 +181,7 @@ impl App {
         };
         let (shared, teller) = (self.shared.clone(), self.teller.clone());
         self.on_thread("save changes", move || {
-            let saved = saving.run().map(|(version, said)| {
-                shared.news(session::News::Version(version));
-                said
-            });
-            teller.tell(Event::Saved(saved));
+            teller.tell(Event::Saved(shared.save(saving)));
         });
     }
 
@@ -175,6 +225,7 @@ impl App {
         let teller = self.teller.clone();
         self.say(format!("saving {name} …"));
         self.on_thread("save picture", move || {
+            priority::lower();
             teller.tell(Event::Saved(task.run()));
         });
     }
@@ -196,25 +247,8 @@ impl App {
             Wanted::Save => self.save_changes(),
             Wanted::CopyCamera => self.copy_camera(context),
             Wanted::SavePicture => self.ask_where(),
-        }
-    }
-
-    /// What the mouse did on the picture.
-    pub(super) fn take_mouse(&mut self, mouse: &Mouse) {
-        self.over = mouse.over;
-        if mouse.dragged != [0.0; 2] {
-            self.move_viewpoint(|viewpoint, scene| {
-                viewport::dragged(&scene.camera, viewpoint, mouse.dragged)
-            });
-        }
-        if mouse.wheel != 0.0 {
-            self.move_viewpoint(|viewpoint, scene| {
-                viewport::moved_away(&scene.camera, viewpoint, -mouse.wheel)
-            });
-        }
-        if mouse.clicked {
-            let again = self.panel.held == mouse.over;
-            self.panel.held = mouse.over.filter(|_| !again);
+            Wanted::Undo => self.step(Direction::Undo),
+            Wanted::Redo => self.step(Direction::Redo),
         }
     }
 }

@@ -1,12 +1,13 @@
 //! What becomes of news of the file and of changes on top of it, without a window.
 
+mod steps;
+
 use std::fs;
 
 use glam::DVec3;
 use tempfile::TempDir;
 
 use super::*;
-use crate::edit::{Measure, Reflectivity};
 
 const SCENE: &str = "\
 # A room, with a word about it.
@@ -46,14 +47,23 @@ fn shown(session: &Session) -> Scene {
 
 /// Saves, as the window does with threads between.
 fn save(session: &mut Session) -> Result<(), String> {
-    let (version, said) = session.saving()?.run()?;
+    let saving = session.saving()?;
+    let saved = saving.run(|text, changes| session.expect(text, changes));
+    let (version, said) = match saved {
+        Ok((version, said)) => (Some(version), said),
+        Err(why) => {
+            session.finish_saving(None);
+            return Err(why);
+        }
+    };
     session.said.push(said);
-    assert!(session.news(News::Version(version)));
+    // What is shown is what was shown before.
+    assert!(!session.finish_saving(version));
     Ok(())
 }
 
-const RED: Target = Target::Material(0, Reflectivity::Ambient);
-const RADIUS: Target = Target::Sphere(0, Measure::Radius);
+const RED: Target = Target::new(EntityId::Material(0), "ambient");
+const RADIUS: Target = Target::new(EntityId::Object(0), "radius");
 
 #[test]
 fn a_mistake_leaves_what_there_was() {
@@ -92,7 +102,7 @@ fn a_file_that_begins_with_a_mistake_is_shown_once_it_is_mended() {
     assert!(!session.news(version("camera cam {")));
     assert!(session.wanted().is_none() && session.trouble.is_some());
     assert!(save(&mut session).is_err());
-    assert!(!session.set(RED, DVec3::ONE.into()));
+    assert!(!session.set(RED, DVec3::ONE.into(), Step::Alone));
     assert!(session.news(version(SCENE)));
     assert!(session.wanted().is_some() && session.trouble.is_none());
 }
@@ -112,32 +122,36 @@ fn the_size_that_was_asked_for_stays_whatever_the_file_says() {
 #[test]
 fn a_change_to_what_the_file_has_is_none() {
     let (_folder, mut session) = session(SCENE);
-    assert!(session.set(RADIUS, 3.0.into()));
-    assert_eq!(session.changes().len(), 1);
-    assert!(!session.set(RADIUS, 3.0.into()));
-    assert!(session.set(RADIUS, 2.5.into()));
-    assert!(session.changes().is_empty());
+    assert!(session.set(RADIUS, 3.0.into(), Step::Alone));
+    assert_eq!(session.unsaved().len(), 1);
+    assert!(!session.set(RADIUS, 3.0.into(), Step::Alone));
+    assert!(session.set(RADIUS, 2.5.into(), Step::Alone));
+    assert!(session.unsaved().is_empty());
 }
 
 #[test]
 fn what_the_language_forbids_is_said_and_changes_nothing() {
     let (_folder, mut session) = session(SCENE);
-    assert!(!session.set(RADIUS, (-1.0).into()));
-    assert!(!session.set(Target::Viewpoint, DVec3::new(4.0, 3.0, 0.0).into()));
+    assert!(!session.set(RADIUS, (-1.0).into(), Step::Alone));
+    assert!(!session.set(
+        Target::VIEWPOINT,
+        DVec3::new(4.0, 3.0, 0.0).into(),
+        Step::Alone
+    ));
     assert_eq!(session.said.len(), 2, "{:?}", session.said);
-    assert!(session.changes().is_empty());
+    assert!(session.unsaved().is_empty());
 }
 
 #[test]
 fn changes_are_discarded_one_by_one_or_all() {
     let (_folder, mut session) = session(SCENE);
     let file = shown(&session);
-    session.set(RADIUS, 3.0.into());
-    session.set(RED, DVec3::new(1.0, 2.0, 3.0).into());
+    session.set(RADIUS, 3.0.into(), Step::Alone);
+    session.set(RED, DVec3::new(1.0, 2.0, 3.0).into(), Step::Alone);
     assert!(session.discard(Some(RADIUS)));
     assert!(!session.discard(Some(RADIUS)));
     assert_eq!(session.value(RADIUS), Some(2.5.into()));
-    assert_eq!(session.changes().len(), 1);
+    assert_eq!(session.unsaved().len(), 1);
     assert!(session.discard(None));
     assert_eq!(shown(&session), file);
 }
@@ -145,18 +159,26 @@ fn changes_are_discarded_one_by_one_or_all() {
 #[test]
 fn looking_around_is_nothing_to_lose() {
     let (_folder, mut session) = session(SCENE);
-    session.set(Target::Viewpoint, DVec3::new(5.0, 3.0, 6.0).into());
-    assert_eq!((session.changes().len(), session.to_be_lost()), (1, 0));
-    session.set(RADIUS, 3.0.into());
-    assert_eq!((session.changes().len(), session.to_be_lost()), (2, 1));
+    session.set(
+        Target::VIEWPOINT,
+        DVec3::new(5.0, 3.0, 6.0).into(),
+        Step::Alone,
+    );
+    assert_eq!((session.unsaved().len(), session.to_be_lost()), (1, 0));
+    session.set(RADIUS, 3.0.into(), Step::Alone);
+    assert_eq!((session.unsaved().len(), session.to_be_lost()), (2, 1));
 }
 
 #[test]
 fn saving_writes_numbers_and_nothing_else() {
     let (_folder, mut session) = session(SCENE);
-    session.set(RADIUS, 3.0.into());
-    session.set(RED, DVec3::new(5.0, 0.25, 0.0).into());
-    session.set(Target::Viewpoint, DVec3::new(4.5, 3.0, 6.0).into());
+    session.set(RADIUS, 3.0.into(), Step::Alone);
+    session.set(RED, DVec3::new(5.0, 0.25, 0.0).into(), Step::Alone);
+    session.set(
+        Target::VIEWPOINT,
+        DVec3::new(4.5, 3.0, 6.0).into(),
+        Step::Alone,
+    );
     let wanted = shown(&session);
     save(&mut session).unwrap();
     let text = fs::read_to_string(&session.path).unwrap();
@@ -165,7 +187,7 @@ fn saving_writes_numbers_and_nothing_else() {
         .replace("5.0 0 0 ", "5.0 0.25 0 ")
         .replace("viewpoint 4 ", "viewpoint 4.5 ");
     assert_eq!(text, expected);
-    assert!(session.changes().is_empty());
+    assert!(session.unsaved().is_empty());
     assert_eq!(shown(&session), wanted);
     // What the watcher tells of it then is no news.
     assert!(!tell(&mut session, &text));
@@ -179,7 +201,7 @@ fn saving_writes_numbers_and_nothing_else() {
 #[test]
 fn what_was_written_meanwhile_is_not_written_over() {
     let (_folder, mut session) = session(SCENE);
-    session.set(RADIUS, 3.0.into());
+    session.set(RADIUS, 3.0.into(), Step::Alone);
     // Somebody saved, and the watcher has not told yet.
     let other = SCENE.replace("2 2 2", "1 1 1");
     fs::write(&session.path, &other).unwrap();
@@ -197,7 +219,7 @@ fn what_was_written_meanwhile_is_not_written_over() {
 #[test]
 fn a_file_with_a_mistake_or_gone_is_not_saved_into() {
     let (_folder, mut session) = session(SCENE);
-    session.set(RADIUS, 3.0.into());
+    session.set(RADIUS, 3.0.into(), Step::Alone);
     let broken = SCENE.replace("sphere ball {", "sphere ball");
     tell(&mut session, &broken);
     assert!(save(&mut session).unwrap_err().contains("mistake"));
@@ -206,14 +228,14 @@ fn a_file_with_a_mistake_or_gone_is_not_saved_into() {
     session.news(News::Gone);
     assert!(save(&mut session).unwrap_err().contains("gone"));
     assert!(!session.path.exists());
-    assert_eq!(session.changes().len(), 1);
+    assert_eq!(session.unsaved().len(), 1);
 }
 
 #[test]
 fn changes_lie_on_top_of_what_the_file_becomes() {
     let (_folder, mut session) = session(SCENE);
-    session.set(RADIUS, 3.0.into());
-    session.set(RED, DVec3::new(1.0, 2.0, 3.0).into());
+    session.set(RADIUS, 3.0.into(), Step::Alone);
+    session.set(RED, DVec3::new(1.0, 2.0, 3.0).into(), Step::Alone);
     // Another material before it, and another ambient for the changed one.
     let edited = SCENE
         .replace(
@@ -223,9 +245,9 @@ fn changes_lie_on_top_of_what_the_file_becomes() {
         .replace("5.0 0 0", "6 0 0");
     assert!(tell(&mut session, &edited));
     assert_eq!(session.value(RADIUS), Some(3.0.into()));
-    let red = Target::Material(1, Reflectivity::Ambient);
+    let red = Target::new(EntityId::Material(1), "ambient");
     assert_eq!(session.value(red), Some(DVec3::new(6.0, 0.0, 0.0).into()));
-    assert_eq!(session.changes().len(), 1);
+    assert_eq!(session.unsaved().len(), 1);
     assert!(
         session.said.iter().any(|said| said.contains("red")),
         "{:?}",
@@ -237,7 +259,7 @@ fn changes_lie_on_top_of_what_the_file_becomes() {
         "",
     );
     assert!(tell(&mut session, &gone));
-    assert!(session.changes().is_empty());
+    assert!(session.unsaved().is_empty());
     assert!(
         session.said.iter().any(|said| said.contains("ball")),
         "{:?}",

@@ -115,3 +115,97 @@ impl Trial {
         quicker
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_alone_gets_what_it_wishes_and_others_their_share() {
+        assert_eq!(height(77, 1000, 1000, Some(5.0), &[]), 77);
+        assert_eq!(height(77, 1000, 1000, None, &[Some(1.0)]), 77);
+        // A quarter of the speed: half of a quarter of the rows.
+        assert_eq!(height(999, 1000, 1000, Some(1.0), &[Some(3.0)]), 125);
+        assert_eq!(height(100, 1000, 1000, Some(1.0), &[Some(3.0)]), 100);
+        // One that has not brought anything counts as quick as the asker.
+        assert_eq!(height(999, 1000, 1000, Some(1.0), &[None]), 250);
+        // Near the end bands become small, but not too small to be worth it.
+        assert_eq!(height(999, 3, 1000, Some(1.0), &[Some(100.0)]), 5);
+        assert_eq!(height(999, 3, 10_000, Some(1.0), &[Some(100.0)]), 1);
+    }
+
+    /// All end together: whatever the speeds are, the last band of each ends within a band of the others.
+    #[test]
+    fn shares_shrink_so_that_all_end_together() {
+        for speeds in [[1.0, 1.0], [1.0, 7.0], [1.0, 90.0]] {
+            let (mut free, mut left) = ([0.0f64; 2], 10_000u64);
+            while left > 0 {
+                let next = usize::from(free[1] < free[0]);
+                let rows = height(
+                    u32::MAX,
+                    left,
+                    10_000,
+                    Some(speeds[next]),
+                    &[Some(speeds[1 - next])],
+                );
+                let rows = u64::from(rows).min(left);
+                left -= rows;
+                free[next] += rows as f64 / speeds[next];
+            }
+            let ideal = 10_000.0 / (speeds[0] + speeds[1]);
+            let end = free[0].max(free[1]);
+            assert!(end < 1.02 * ideal + 1.0, "{speeds:?}: {end} of {ideal}");
+        }
+    }
+
+    #[test]
+    fn a_band_is_made_twice_only_where_that_is_quicker() {
+        let seconds = Duration::from_secs_f64;
+        // 10 s of work, begun 2 s ago; in 4 s at most it must be there.
+        assert!(pays_twice(100.0, 26.0, Some(10.0), seconds(2.0)));
+        assert!(!pays_twice(100.0, 24.0, Some(10.0), seconds(2.0)));
+        // Late, or never seen to bring anything: it needs as long again.
+        assert!(pays_twice(100.0, 10.0, Some(10.0), seconds(21.0)));
+        assert!(!pays_twice(100.0, 10.0, None, seconds(19.0)));
+        assert!(pays_twice(100.0, 10.0, None, seconds(21.0)));
+    }
+
+    /// A trial up to its decision; `quick` is the speed of the one on trial, against 10.
+    fn decided(quick: f64, left: f64) -> Option<Role> {
+        use Role::{OnTrial, Works};
+        let mut trial = Trial::default();
+        // Both work until the one on trial has brought a band, of which it has one.
+        assert!(
+            trial.admits(Works, true)
+                && trial.admits(OnTrial, false)
+                && !trial.admits(OnTrial, true)
+        );
+        assert_eq!(trial.learns(Works, &(90..100), 10.0, left), None);
+        assert!(trial.is_warming());
+        assert_eq!(trial.learns(OnTrial, &(80..90), 1.0, left), None);
+        // The band that the other one had then does not count; its next one does, and is alone.
+        assert_eq!(trial.learns(Works, &(70..80), 99.0, left), None);
+        assert!(trial.admits(Works, false) && !trial.admits(OnTrial, false));
+        trial.took(Works, &(60..70));
+        assert!(!trial.admits(Works, false) && !trial.admits(OnTrial, false));
+        if let Some(decided) = trial.learns(Works, &(60..70), 10.0, left) {
+            return Some(decided);
+        }
+        assert!(
+            !trial.admits(Works, false)
+                && trial.admits(OnTrial, false)
+                && !trial.admits(OnTrial, true)
+        );
+        let decided = trial.learns(OnTrial, &(50..60), quick, left);
+        assert!(trial.admits(Works, false) && trial.admits(OnTrial, true));
+        decided
+    }
+
+    #[test]
+    fn the_quicker_one_makes_the_rest() {
+        assert_eq!(decided(11.0, 1e6), Some(Role::OnTrial));
+        assert_eq!(decided(9.0, 1e6), Some(Role::Works));
+        // There is not enough left for a trial.
+        assert_eq!(decided(1000.0, 0.5), Some(Role::Works));
+    }
+}

@@ -13,8 +13,8 @@ use crate::certify::Tally;
 use crate::frame::{Band, Halt};
 use crate::render::Error;
 
-/// Pixels that may be made or under way below the first row that has not gone out: 24 MiB of bytes.
-const AHEAD: u64 = 8 << 20;
+/// Pixels that may be made or under way below the first row that has not gone out: three of the largest bands, 18 MiB.
+const AHEAD: u64 = 6 << 20;
 
 /// What a worker is here for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -346,7 +346,7 @@ fn no_more_than_a_window_is_made_ahead() {
     while let Taken::Rows(_) = bag.take(worker, 1, u32::MAX, false) {
         taken += 1;
     }
-    assert_eq!(taken, 8);
+    assert_eq!(taken, 6);
 }
 
 #[test]

@@ -109,7 +109,7 @@ impl Packed {
             scale: prepared.camera.scale,
             objects: prepared
                 .materials
-                .iter()
+                .par_iter()
                 .map(|&m| object(prepared.palette[m].ambient))
                 .collect(),
             kinds: Vec::new(),

@@ -1,0 +1,66 @@
+//! Which adapters may make a picture together, and whether it is worth loading a driver to ask.
+
+use std::fs;
+
+use super::GpuError;
+use super::adapters::{choose, enumerate, instance, problem, wanted_by_variable};
+
+/// Adapters that a picture may be made on together.
+#[derive(Debug)]
+pub enum Candidates {
+    /// These: the one that was named, else all that are hardware, else the first that is software.
+    Adapters(Vec<wgpu::Adapter>),
+    /// There is software only, which was not asked for; it is called this.
+    Software(String),
+}
+
+/// Whether an adapter is named: by this, or by the environment.
+pub fn is_named(wanted: Option<&str>) -> bool {
+    wanted.is_some() || wanted_by_variable().is_some()
+}
+
+/// The adapters for a picture: the one that was named, or all that are hardware and can be used; where there are none,
+/// the first that is software, if that will do.
+///
+/// # Errors
+/// If there is none.
+pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, GpuError> {
+    let all = enumerate(instance());
+    let named = is_named(wanted);
+    if !named {
+        let is_usable = |adapter: &&wgpu::Adapter| {
+            !is_software(&adapter.get_info()) && problem(adapter).is_none()
+        };
+        let hardware: Vec<_> = all.iter().filter(is_usable).cloned().collect();
+        if !hardware.is_empty() {
+            return Ok(Candidates::Adapters(hardware));
+        }
+    }
+    let first = choose(&all, wanted)?;
+    if !named && !software && is_software(&first.get_info()) {
+        return Ok(Candidates::Software(first.get_info().name));
+    }
+    Ok(Candidates::Adapters(vec![first.clone()]))
+}
+
+pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    info.device_type == wgpu::DeviceType::Cpu
+}
+
+/// Whether there may be an adapter that is no software, as far as can be told without loading a driver: on Linux GPUs
+/// are files in /dev.
+pub fn may_be_hardware() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    let is_gpu = |name: &str| {
+        ["nvidia", "dxg", "kfd", "mali", "kgsl"]
+            .iter()
+            .any(|start| name.starts_with(start))
+    };
+    let holds = |folder: &str, is_gpu: &dyn Fn(&str) -> bool| {
+        let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.any(|entry| is_gpu(&entry.file_name().to_string_lossy()))
+    };
+    holds("/dev/dri", &|name| name.starts_with("renderD")) || holds("/dev", &is_gpu)
+}
