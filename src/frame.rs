@@ -1,5 +1,7 @@
 //! Finished pixels on their way: what the tracers hand on, and what takes it.
 
+pub mod spare;
+
 use std::io;
 use std::ops::Range;
 

@@ -26,7 +26,8 @@ pub struct Settings {
     pub jitter: SamplePattern,
     /// How far rays are followed.
     pub limits: Limits,
-    /// Part of the name of the adapter to use, in any case of letters.
+    /// Part of the name of the adapter to use, in any case of letters; without, the environment may name one
+    /// ([`VARIABLE`](crate::gpu::adapters::VARIABLE)).
     pub adapter: Option<String>,
     /// CPU threads; all cores without.
     pub threads: Option<usize>,

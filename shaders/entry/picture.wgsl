@@ -8,6 +8,25 @@ fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
         + SAMPLE_ROUNDINGS * U * (*sum).color;
 }
 //#end
+//#if packed
+
+// The words of a workgroup: a word of a file's picture holds bytes of pixels that two invocations made.
+var<workgroup> handed: array<u32, WORKGROUP * WORKGROUP>;
+
+// Groups of a row of the dispatch, filled up.
+fn groups_of_row() -> u32 {
+    return (dispatch.size.x + PACKED_GROUP - 1u) / PACKED_GROUP;
+}
+
+// Stores a word of the pixels' buffer.
+fn put(at: u32, word: u32) {
+//#if partial
+    pixels.words[at] = word;
+//#else
+    pixels[at] = word;
+//#end
+}
+//#end
 //#if quad
 
 // A pixel's bytes, and its verdict.
@@ -20,6 +39,34 @@ fn make_pixel(pixel: vec2i) -> u32 {
 //#end
 }
 
+//#if packed
+// Four pixels side by side, as far as there are any: their bytes, and in words of 16 pixels their verdicts.
+@compute @workgroup_size(WORKGROUP, WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) here: u32) {
+    let column = 4u * id.x;
+    var doubts = 0u;
+    if (column < dispatch.size.x) & (id.y < dispatch.size.y) {
+        // Rows of the picture go down, y goes up.
+        let pixel = vec2i(i32(dispatch.first.x + column), i32(dispatch.first.y) - i32(id.y));
+        let a = make_pixel(pixel);
+        let b = make_pixel(pixel + vec2i(1, 0));
+        let c = make_pixel(pixel + vec2i(2, 0));
+        let d = make_pixel(pixel + vec2i(3, 0));
+        let first = PACKED_WORDS * groups_of_row() * id.y + 3u * id.x;
+        put(first, (a & 0xffffffu) | (b << 24u));
+        put(first + 1u, ((b >> 8u) & 0xffffu) | (c << 16u));
+        put(first + 2u, ((c >> 16u) & 0xffu) | (d << 8u));
+        doubts = select(0u, 1u, a >> 24u != 0u) | select(0u, 2u, b >> 24u != 0u) | select(0u, 4u, c >> 24u != 0u)
+            | select(0u, 8u, d >> 24u != 0u);
+    }
+    handed[here] = doubts;
+    workgroupBarrier();
+    if (column < dispatch.size.x) & (id.y < dispatch.size.y) & (id.x % 4u == 0u) {
+        let all = doubts | (handed[here + 1u] << 4u) | (handed[here + 2u] << 8u) | (handed[here + 3u] << 12u);
+        put(groups_of_row() * (PACKED_WORDS * dispatch.size.y + id.y) + id.x / 4u, all);
+    }
+}
+//#else
 // Four pixels side by side, as far as there are any: one store costs less than four.
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -32,6 +79,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     pixels[id.y * ((dispatch.size.x + 3u) / 4u) + id.x] = vec4u(make_pixel(pixel), make_pixel(pixel + vec2i(1, 0)),
         make_pixel(pixel + vec2i(2, 0)), make_pixel(pixel + vec2i(3, 0)));
 }
+//#end
+//#else
+//#if packed
+
+// A pixel's bytes, and its verdict.
+fn make_pixel(id: vec2u) -> u32 {
 //#else
 
 @compute @workgroup_size(WORKGROUP, WORKGROUP)
@@ -39,6 +92,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= dispatch.size) {
         return;
     }
+//#end
     // Rows of the picture go down, y goes up.
     let pixel = vec2i(i32(dispatch.first.x + id.x), i32(dispatch.first.y) - i32(id.y));
     let place = id.y * dispatch.size.x + id.x;
@@ -102,7 +156,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
         let record = atomicAdd(&pixels.partials, 1u);
         if record < dispatch.room {
+//#if packed
+            let first = (PACKED_WORDS + 1u) * groups_of_row() * dispatch.size.y + record * PARTIAL_WORDS;
+//#else
             let first = dispatch.size.x * dispatch.size.y + record * PARTIAL_WORDS;
+//#end
             let color = bitcast<vec3u>(part.color);
             let error = bitcast<vec3u>(part.error);
             pixels.words[first] = place;
@@ -117,6 +175,45 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
+//#end
+//#if packed
+    return bytes;
+}
+
+// The pixels of a row of the workgroup are a group: twelve words of bytes, and one of verdicts.
+@compute @workgroup_size(WORKGROUP, WORKGROUP)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) here: u32,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    var word = 0u;
+    if all(id.xy < dispatch.size) {
+        word = make_pixel(id.xy);
+    }
+    handed[here] = word;
+    workgroupBarrier();
+    if id.y < dispatch.size.y {
+        let group = id.x / PACKED_GROUP;
+        if local.x < PACKED_WORDS {
+            // Word 0 of three has a pixel and a byte of the next one, word 1 two bytes of each, word 2 the last byte of
+            // one, and a pixel.
+            let first = here + local.x / 3u;
+            let shift = 8u * (local.x % 3u);
+            let bytes = ((handed[first] & 0xffffffu) >> shift) | (handed[first + 1u] << (24u - shift));
+            put(PACKED_WORDS * (groups_of_row() * id.y + group) + local.x, bytes);
+        }
+        if local.x == PACKED_WORDS {
+            var doubts = 0u;
+            for (var i = 0u; i < PACKED_GROUP; i += 1u) {
+                doubts |= select(0u, 1u << i, handed[here - PACKED_WORDS + i] >> 24u != 0u);
+            }
+            put(groups_of_row() * (PACKED_WORDS * dispatch.size.y + id.y) + group, doubts);
+        }
+    }
+}
+//#else
+//#if partial
     pixels.words[place] = bytes;
 //#else
 //#if values
@@ -126,4 +223,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
 //#end
 }
+//#end
 //#end

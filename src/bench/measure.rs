@@ -211,7 +211,7 @@ impl Subject<'_> {
 
     /// The dispatches alone, of a shader that is compiled once and has run before.
     fn kernel(&self, gpu: &Gpu, packed: &Packed, settings: &Settings) -> Result<Times, Unmeasured> {
-        let features = FeatureSet::new(packed, settings, gpu.lanes);
+        let features = FeatureSet::new(packed, settings, gpu.lanes).for_a_file(gpu.software);
         let wgsl = compose(packed, &features, Entry::Picture);
         let pipeline = Pipeline::new(gpu, packed, &features, &wgsl)?;
         let [width, height] = self.scene.camera.pixeldim;

@@ -11,7 +11,7 @@ use super::{Decided, DecidedBy, Tally};
 use crate::certify::lanes::{LANES, Lanes};
 use crate::cpu::pixel::ExactTracer;
 use crate::cpu::trace::Limits;
-use crate::frame::{Band, Halt, StopRequested};
+use crate::frame::{Band, Halt, StopRequested, spare};
 use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::prepare::ViewParameters;
@@ -173,7 +173,7 @@ impl<'a> PixelDecider<'a> {
     ) -> Result<(Band, Tally), Halt> {
         let (width, top) = (self.width, rows.end - 1);
         let pixels = width * rows.len();
-        let mut rgb = vec![0; 3 * pixels];
+        let mut rgb = spare::take(3 * pixels);
         let mut values = vec![[0.0; 3]; if self.values { pixels } else { 0 }];
         let mut verdicts = vec![DecidedBy::Gpu; if self.verdicts { pixels } else { 0 }];
         // Rows are cut into pieces: small enough for all threads to get some, large enough that handing them out costs

@@ -4,6 +4,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
+use super::bands::buffers::BufferPool;
 use super::candidates::is_software;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
@@ -29,6 +30,8 @@ pub struct Gpu {
     pub lanes: u32,
     /// Whether work may be handed in.
     pub submit_gate: SubmitGate,
+    /// Buffers of dispatches that are over.
+    pub(super) buffers: Arc<BufferPool>,
     trouble: Arc<Mutex<Trouble>>,
 }
 
@@ -115,6 +118,7 @@ impl Gpu {
             software,
             lanes,
             submit_gate: SubmitGate::default(),
+            buffers: Arc::default(),
             trouble,
         })
     }
@@ -151,7 +155,11 @@ impl Gpu {
                 layout: None,
                 module: &module,
                 entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                // No shader of ours reads what it has not written.
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    zero_initialize_workgroup_memory: false,
+                    ..Default::default()
+                },
                 cache: None,
             });
         self.check()?;

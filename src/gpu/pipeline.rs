@@ -9,7 +9,8 @@ use super::GpuError;
 use super::device::Gpu;
 use crate::shader::binding::{BINDINGS, DISPATCH, OFFSETS, PIXELS};
 use crate::shader::feature::{Feature, Features};
-use crate::shader::feature_set::{FeatureSet, QUAD};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::form::Form;
 use crate::shader::pack::Packed;
 use crate::shader::records::CameraNumbers;
 
@@ -18,14 +19,8 @@ use crate::shader::records::CameraNumbers;
 pub struct Pipeline {
     /// The compiled shader.
     pub pipeline: wgpu::ComputePipeline,
-    /// Pixels side by side that an invocation makes; rows in its buffer are whole multiples of them.
-    pub across: u32,
-    /// Bytes that the shader writes for a pixel.
-    pub pixel_bytes: u64,
-    /// Samples whose offsets the shader reads, for each pixel; 0 where it does not.
-    pub offsets: u32,
-    /// Words of a record that the shader leaves of a pixel with sure and doubtful samples; 0 where it leaves none.
-    pub partial_words: u32,
+    /// What it leaves of pixels.
+    pub form: Form,
     /// The camera, where the shader reads it from the dispatch's record.
     pub camera: Option<CameraNumbers>,
     buffers: SceneBuffers,
@@ -76,10 +71,7 @@ impl Pipeline {
         let has = |feature: Feature| features.contains(&feature);
         Self {
             pipeline,
-            across: if has(Feature::Quad) { QUAD } else { 1 },
-            pixel_bytes: if set.values { 16 } else { 4 },
-            offsets: if has(Feature::Course) { set.samples } else { 0 },
-            partial_words: set.partial_words(),
+            form: Form::of(set),
             camera: has(Feature::Moving).then_some(packed.camera.numbers),
             buffers,
         }

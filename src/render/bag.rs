@@ -17,6 +17,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::Error;
+use crate::frame::spare;
 use crate::frame::{Emit, Halt};
 use crate::stopwatch::{Phase, Stopwatch};
 use state::State;
@@ -227,6 +228,7 @@ impl Bag {
                 Err(error) => state.fail(error.into()),
             }
             self.changed.notify_all();
+            spare::give(finished.band.rgb);
         }
     }
 }

@@ -9,6 +9,7 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
+use std::thread;
 
 use super::devices::Found;
 use crate::frame::StopRequested;
@@ -21,6 +22,7 @@ use crate::jitter::Jitter;
 use crate::settings::Settings;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::feature_set::FeatureSet;
+use crate::shader::form::Form;
 use crate::shader::pack::Packed;
 use crate::stopwatch::{Phase, Phases, Stopwatch};
 
@@ -170,14 +172,25 @@ fn pipeline(
     if device.moving && !features.certified {
         features = features.while_moving();
     }
+    if device.canvas.is_none() {
+        features = features.for_a_file(gpu.software);
+    }
     let wgsl = compose(packed, &features, Entry::Picture);
     watch.lap(Phase::Pack);
     let buffers = SceneBuffers::new(gpu, packed, &features)?;
     watch.lap(Phase::Upload);
-    let shader = match device.compiled {
-        Some(compiled) => compiled.get(gpu, &wgsl),
-        None => gpu.compile(&wgsl, "main"),
-    }?;
+    let form = Form::of(&features);
+    let shader = thread::scope(|scope| {
+        // Where there can be no thread, the buffers are made when they are needed.
+        let buffers = || bands::prepare(gpu, &form, task.width, &task.rows);
+        let _ = thread::Builder::new()
+            .name("buffers".into())
+            .spawn_scoped(scope, buffers);
+        match device.compiled {
+            Some(compiled) => compiled.get(gpu, &wgsl),
+            None => gpu.compile(&wgsl, "main"),
+        }
+    })?;
     watch.lap(Phase::Compile);
     Ok(Pipeline::of(shader, buffers, packed, &features))
 }

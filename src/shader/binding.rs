@@ -140,8 +140,10 @@ macro_rules! bindings {
     };
 }
 
-fn four_words(features: &Features) -> bool {
-    features.contains(&Feature::Values) || features.contains(&Feature::Quad)
+/// Whether pixels are more or less than a word each.
+fn others(features: &Features) -> bool {
+    let kinds = [Feature::Values, Feature::Quad, Feature::Packed];
+    kinds.iter().any(|feature| features.contains(feature))
 }
 
 bindings! {
@@ -152,12 +154,22 @@ bindings! {
     /// Packed bytes of four pixels side by side, rows filled up: red, green, blue from the lowest byte up, and in the
     /// highest UNDECIDED where the CPU has to decide, else 0.
     binding PIXELS, "pixels", WRITE, "array<vec4u>", "pixels",
-        |f| f.contains(&Feature::Quad) && !f.contains(&Feature::Values), None;
+        |f| f.contains(&Feature::Quad) && !f.contains(&Feature::Packed) && !f.contains(&Feature::Values), None;
+    /// Rows of groups of 16 pixels, filled up: of each group twelve words with red, green, blue of one pixel after the
+    /// other, from the lowest byte up. Behind all rows a word for each group: a bit for each pixel, from the lowest up,
+    /// that is set where the CPU has to decide.
+    binding PIXELS, "pixels", WRITE, "array<u32>", "pixels",
+        |f| f.contains(&Feature::Packed) && !f.contains(&Feature::Partial), None;
+    /// The words are rows of groups of 16 pixels, filled up: of each group twelve with red, green, blue of one pixel
+    /// after the other, from the lowest byte up. Behind all rows a word for each group: a bit for each pixel, from the
+    /// lowest up, that is set where the CPU has to decide.
+    binding PIXELS, "pixels", WRITE, "Pixels", "pixels",
+        |f| f.contains(&Feature::Packed) && f.contains(&Feature::Partial), None;
     /// The words hold red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to
     /// decide.
-    binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !four_words(f), None;
+    binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !others(f), None;
     /// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
-    binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !four_words(f), None;
+    binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !others(f), None;
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that
     /// `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);

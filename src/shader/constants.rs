@@ -3,6 +3,7 @@
 use super::bounds;
 use super::feature::{Feature, Features};
 use super::feature_set::{FeatureSet, PARTIAL_HEAD};
+use super::form;
 use super::kind::SurfaceKind;
 use super::literal::literal;
 use super::pack::Packed;
@@ -106,6 +107,8 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
     // Each of up to five loops takes one more iteration, which only finds its end.
     let primary_steps = packed.loop_iterations() + 5;
     counts.extend([
+        (Feature::Packed, "PACKED_GROUP", form::GROUP as usize),
+        (Feature::Packed, "PACKED_WORDS", form::GROUP_WORDS as usize),
         (Feature::Partial, "PARTIAL_WORDS", words as usize),
         (
             Feature::Partial,

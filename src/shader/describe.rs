@@ -12,7 +12,7 @@ use crate::settings::Settings;
 
 fn packed(scene: &Scene, settings: &Settings) -> (Packed, FeatureSet) {
     let packed = Packed::new(scene, settings);
-    let features = FeatureSet::new(&packed, settings, SOFTWARE_LANES);
+    let features = FeatureSet::new(&packed, settings, SOFTWARE_LANES).for_a_file(true);
     (packed, features)
 }
 

@@ -109,6 +109,8 @@ features! {
     Quad = "quad",
     /// The unquantised values are wanted.
     Values = "values",
+    /// Pixels are stored as a picture's file has them, their verdicts behind them.
+    Packed = "packed",
     /// There are several samples a pixel.
     Samples = "samples",
     /// Pixels with sure and doubtful samples leave a record.

@@ -48,6 +48,8 @@ pub struct FeatureSet {
     pub kinds: BTreeSet<SurfaceKind>,
     /// The unquantised values are wanted too.
     pub values: bool,
+    /// Pixels are stored as a picture's file has them, unless their values are wanted (see [`Form`](super::form::Form)).
+    pub packed: bool,
     /// Rays a pixel.
     pub samples: u32,
     /// The samples are spread as the course's program did.
@@ -152,6 +154,7 @@ impl FeatureSet {
             moving: false,
             kinds: packed.kinds.iter().copied().collect(),
             values: settings.values,
+            packed: false,
             samples: settings.samples,
             course: several.is_some_and(|several| several.spread == SamplePattern::Course),
             lanes,
@@ -187,6 +190,17 @@ impl FeatureSet {
         Self {
             unrolled: false,
             moving: true,
+            ..self
+        }
+    }
+
+    /// The same for a picture that goes into a file, not onto a canvas. Where invocations make one pixel each, packing
+    /// them takes a barrier: nothing on a GPU, but up to a third of the kernel's time on a software driver, which
+    /// would spare the same processor less.
+    #[must_use]
+    pub fn for_a_file(self, software: bool) -> Self {
+        Self {
+            packed: self.quad || !software,
             ..self
         }
     }
@@ -343,6 +357,7 @@ impl<'a> Conditions<'a> {
             Feature::FromCenter => psphere || light.spheres,
             Feature::Quad => any && set.quad,
             Feature::Values => set.values,
+            Feature::Packed => set.packed && !set.values,
             Feature::Samples => any && set.samples > 1,
             Feature::Partial => set.partial_words() > 0,
             Feature::Course => any && set.course,

@@ -12,6 +12,7 @@ pub mod constants;
 pub mod describe;
 pub mod feature;
 pub mod feature_set;
+pub mod form;
 pub mod kind;
 pub mod literal;
 pub mod pack;

@@ -5,9 +5,10 @@
 pub(crate) mod drivers;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use glam::DVec3;
-use plumb::render::{Backend, Report, Settings, render};
+use plumb::render::{Backend, Devices, Report, Settings, render_with};
 use plumb::scene::{Beam, Light, Scene, load};
 
 /// The folder `scenes/`.
@@ -38,10 +39,16 @@ pub(crate) fn read(path: &Path) -> Scene {
     load(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+/// The devices of all tests of a process that do not test how one is opened.
+pub(crate) fn devices() -> &'static Devices {
+    static DEVICES: OnceLock<Devices> = OnceLock::new();
+    DEVICES.get_or_init(Devices::new)
+}
+
 /// Renders a whole picture; top row first, three bytes a pixel.
 pub(crate) fn picture(scene: &Scene, settings: &Settings) -> (Vec<u8>, Report) {
     let mut rgb = Vec::new();
-    let report = render(scene, settings, &mut |band| {
+    let report = render_with(scene, settings, devices(), &mut |band| {
         rgb.extend_from_slice(&band.rgb);
         Ok(())
     })

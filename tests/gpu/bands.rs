@@ -1,11 +1,20 @@
 //! How a picture is cut into pieces changes no byte of it: bands of different heights, rows rendered alone, one thread
 //! or many, the CPU or the GPU. Needs an adapter, and fails without one.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use plumb::certify::DecidedBy;
-use plumb::render::{Backend, Band, Precision, Report, SamplePattern, Settings, render};
-use plumb::scene::Scene;
+use plumb::gpu::pipeline::Pipeline;
+use plumb::gpu::{adapters, bands};
+use plumb::render::{
+    Backend, Band, Precision, Report, SamplePattern, Settings, render, render_with,
+};
+use plumb::scene::{Camera, Scene};
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::form::Pixels;
+use plumb::shader::pack::Packed;
+use plumb::stopwatch::Stopwatch;
 
 use crate::common;
 
@@ -27,7 +36,7 @@ fn scene(name: &str) -> Scene {
 
 fn bands(scene: &Scene, settings: &Settings) -> (Vec<Band>, Report) {
     let mut bands = Vec::new();
-    let report = render(scene, settings, &mut |band| {
+    let report = render_with(scene, settings, common::devices(), &mut |band| {
         bands.push(band.clone());
         Ok(())
     });
@@ -197,6 +206,81 @@ fn verdicts_and_counts_agree() {
             match report.backend {
                 Backend::Gpu => assert_eq!(report.refined, 93 * 71 - by_gpu),
                 _ => assert_eq!((report.refined, by_gpu), (0, 0)),
+            }
+        }
+    }
+}
+
+/// What a device makes of a scene in one form, band by band: bytes, and of doubtful pixels the place and what is known.
+fn stored(scene: &Scene, settings: &Settings, for_a_file: bool) -> Vec<(Vec<u8>, Vec<u32>, usize)> {
+    let gpu = adapters::shared(None).unwrap_or_else(|error| panic!("{error}"));
+    let packed = Packed::new(scene, settings);
+    let mut features = FeatureSet::new(&packed, settings, gpu.lanes);
+    if for_a_file {
+        features = features.for_a_file(false);
+    }
+    let wgsl = compose(&packed, &features, Entry::Picture);
+    let pipeline = Pipeline::new(&gpu, &packed, &features, &wgsl).unwrap();
+    let expected = [Pixels::Words, Pixels::Packed][usize::from(for_a_file)];
+    assert_eq!(pipeline.form.pixels, expected);
+    let [width, height] = scene.camera.pixeldim;
+    let jitter = settings.sampling(width, height);
+    let frame = bands::Frame {
+        width,
+        rows: 0..height,
+        tests: packed.tests(),
+        jitter: &jitter,
+        band_rows: Some(17),
+        // So short that rectangles are cut by columns.
+        dispatch_seconds: 1e-4,
+        canvas: None,
+    };
+    let mut stored = Vec::new();
+    bands::run(
+        &gpu,
+        &pipeline,
+        &frame,
+        &mut bands::from_the_top(0..height),
+        &|| false,
+        &mut Stopwatch::start(),
+        &mut |rendered| {
+            let parts = rendered.doubtful.iter();
+            let parts = parts.filter_map(|place| rendered.partials.get(*place));
+            let known = parts.map(|part| part.samples() as usize).sum();
+            stored.push((rendered.band.rgb, rendered.doubtful, known));
+            ControlFlow::Continue(())
+        },
+    )
+    .unwrap();
+    stored
+}
+
+/// Packed for a file or in words for a canvas, with a pixel an invocation or four, records behind them or none, whatever
+/// the width: the same bytes, and the same of them in doubt.
+#[test]
+fn both_forms_of_pixels_hold_the_same() {
+    let kinds = [
+        "notes/walls.txt",
+        "gallery/procedural_all.txt",
+        "lit/mirror_and_glass.txt",
+    ];
+    for name in kinds {
+        for pixeldim in [[93, 31], [1, 40], [333, 5]] {
+            let scene = Scene {
+                camera: Camera {
+                    pixeldim,
+                    ..scene(name).camera
+                },
+                ..scene(name)
+            };
+            for (samples, jitter) in [(1, SamplePattern::Hash), (3, SamplePattern::Course)] {
+                let settings = Settings {
+                    samples,
+                    jitter,
+                    ..settings(Backend::Gpu, None)
+                };
+                let [words, packed] = [false, true].map(|packed| stored(&scene, &settings, packed));
+                assert!(words == packed, "{name}, {pixeldim:?}, {samples} samples");
             }
         }
     }

@@ -1,8 +1,11 @@
 //! The band under way: rectangles of pixels come in, a band goes out, with the places of the pixels that are in doubt.
 
+use std::ops::Range;
+
 use super::partial::{Layout, Partials};
 use super::plan::Rectangle;
-use crate::frame::Band;
+use crate::frame::{Band, spare};
+use crate::shader::form::{GROUP, GROUP_WORDS, Pixels};
 
 /// A band as the GPU has it.
 #[derive(Debug)]
@@ -19,30 +22,40 @@ pub struct Rendered {
 #[derive(Debug)]
 pub(super) struct Assembly {
     width: usize,
-    values: bool,
+    pixels: Pixels,
     under_way: Option<Rendered>,
     complete: bool,
 }
 
+/// Where a rectangle's pixels go.
+struct Target<'a> {
+    /// Columns of the band.
+    width: usize,
+    columns: Range<usize>,
+    rgb: &'a mut [u8],
+    values: Option<&'a mut Vec<[f32; 3]>>,
+    doubtful: &'a mut Vec<u32>,
+}
+
 impl Assembly {
-    pub(super) fn new(width: u32, values: bool) -> Self {
+    pub(super) fn new(width: u32, pixels: Pixels) -> Self {
         Self {
             width: width as usize,
-            values,
+            pixels,
             under_way: None,
             complete: false,
         }
     }
 
-    /// Copies a rectangle's pixels to their place. Each comes with its verdict in its highest byte, 0 if it is sure:
-    /// the bytes below it have to be taken apart anyway. Behind them are the records of those with sure and doubtful
-    /// samples.
+    /// Copies a rectangle's pixels to their place, notes which the GPU leaves to the CPU, and takes the records of those
+    /// with sure and doubtful samples.
     pub(super) fn take(&mut self, rectangle: &Rectangle, layout: &Layout, bytes: &[u8]) {
         let [counter, bytes, records] = layout.split(bytes);
         #[cfg(test)]
-        let bytes = &tests::tampered(rectangle, bytes, self.values);
+        let bytes = &tests::tampered(rectangle, bytes, self.pixels);
         let rows = (rectangle.band.end - rectangle.band.start) as usize;
         let pixels = rows * self.width;
+        let values = self.pixels == Pixels::Values;
         let Rendered {
             band,
             doubtful,
@@ -50,8 +63,8 @@ impl Assembly {
         } = self.under_way.get_or_insert_with(|| Rendered {
             band: Band {
                 rows: rectangle.band.clone(),
-                rgb: vec![0; 3 * pixels],
-                values: self.values.then(|| vec![[0.0; 3]; pixels]),
+                rgb: spare::take(3 * pixels),
+                values: values.then(|| vec![[0.0; 3]; pixels]),
                 verdicts: None,
             },
             doubtful: Vec::new(),
@@ -59,37 +72,17 @@ impl Assembly {
         });
         let list = [counter, records];
         partials.take(rectangle, self.width as u32, layout.words, list);
-        let columns = rectangle.columns.start as usize..rectangle.columns.end as usize;
-        let pixel_bytes = if self.values { 16 } else { 4 };
-        // A row of the buffer may be longer than the row of pixels that it holds.
-        for (row, line) in bytes.chunks_exact(bytes.len() / rows).enumerate() {
-            let line = &line[..columns.len() * pixel_bytes];
-            let place = row * self.width + columns.start..row * self.width + columns.end;
-            let rgb = &mut band.rgb[3 * place.start..3 * place.end];
-            let mut verdicts = 0;
-            for (pixel, to) in line.chunks_exact(pixel_bytes).zip(rgb.chunks_exact_mut(3)) {
-                to.copy_from_slice(&pixel[pixel_bytes - 4..pixel_bytes - 1]);
-                verdicts |= pixel[pixel_bytes - 1];
-            }
-            if verdicts != 0 {
-                let pixels = line.chunks_exact(pixel_bytes).enumerate();
-                doubtful.extend(
-                    pixels
-                        .filter(|(_, p)| p[pixel_bytes - 1] != 0)
-                        .map(|(i, _)| (place.start + i) as u32),
-                );
-            }
-            if let Some(values) = &mut band.values {
-                for (pixel, to) in line.chunks_exact(pixel_bytes).zip(&mut values[place]) {
-                    let channel = |i: usize| -> f32 {
-                        let word = pixel[4 * i..4 * i + 4]
-                            .try_into()
-                            .map_or(0, u32::from_le_bytes);
-                        f32::from_bits(word) / 255.0
-                    };
-                    *to = [channel(0), channel(1), channel(2)];
-                }
-            }
+        let mut target = Target {
+            width: self.width,
+            columns: rectangle.columns.start as usize..rectangle.columns.end as usize,
+            rgb: &mut band.rgb,
+            values: band.values.as_mut(),
+            doubtful,
+        };
+        match self.pixels {
+            Pixels::Packed => target.take_packed(rows, bytes),
+            Pixels::Words => target.take_words::<4>(rows, bytes),
+            Pixels::Values => target.take_words::<16>(rows, bytes),
         }
         self.complete = rectangle.last;
     }
@@ -107,10 +100,79 @@ impl Assembly {
     }
 }
 
+/// The last word of a pixel.
+fn last(pixel: &[u8]) -> [u8; 4] {
+    pixel.last_chunk().copied().unwrap_or_default()
+}
+
+impl Target<'_> {
+    /// Of rows of groups of bytes as they are wanted, and their verdicts behind them.
+    fn take_packed(&mut self, rows: usize, bytes: &[u8]) {
+        let groups = self.columns.len().div_ceil(GROUP as usize);
+        let (rgb, verdicts) = bytes.split_at(4 * GROUP_WORDS as usize * groups * rows);
+        // A row of the buffer may be longer than the row of pixels that it holds.
+        let line = rgb.len() / rows;
+        let wanted = 3 * self.columns.len();
+        if line == 3 * self.width {
+            self.rgb.copy_from_slice(rgb);
+        } else {
+            for (row, line) in rgb.chunks_exact(line).enumerate() {
+                let place = row * self.width + self.columns.start;
+                self.rgb[3 * place..][..wanted].copy_from_slice(&line[..wanted]);
+            }
+        }
+        for (row, words) in verdicts.chunks_exact(4 * groups).enumerate() {
+            let place = row * self.width + self.columns.start;
+            for (group, word) in words.as_chunks().0.iter().enumerate() {
+                let mut bits = u32::from_le_bytes(*word);
+                while bits != 0 {
+                    let column = group * GROUP as usize + bits.trailing_zeros() as usize;
+                    if column < self.columns.len() {
+                        self.doubtful.push((place + column) as u32);
+                    }
+                    bits &= bits - 1;
+                }
+            }
+        }
+    }
+
+    /// Of rows of pixels of so many bytes. The last one of each is its verdict, 0 if it is sure: the bytes before it
+    /// have to be taken apart anyway.
+    fn take_words<const BYTES: usize>(&mut self, rows: usize, bytes: &[u8]) {
+        // A row of the buffer may be longer than the row of pixels that it holds.
+        for (row, line) in bytes.chunks_exact(bytes.len() / rows).enumerate() {
+            let line = &line.as_chunks::<BYTES>().0[..self.columns.len()];
+            let start = row * self.width + self.columns.start;
+            let place = start..start + self.columns.len();
+            let rgb = self.rgb[3 * place.start..3 * place.end].as_chunks_mut().0;
+            let mut verdicts = 0;
+            for (pixel, to) in line.iter().zip(rgb) {
+                let [r, g, b, verdict] = last(pixel);
+                *to = [r, g, b];
+                verdicts |= verdict;
+            }
+            if verdicts != 0 {
+                let pixels = line.iter().enumerate();
+                let doubtful = pixels.filter(|(_, pixel)| pixel[BYTES - 1] != 0);
+                self.doubtful
+                    .extend(doubtful.map(|(i, _)| (start + i) as u32));
+            }
+            if let Some(values) = &mut self.values {
+                for (pixel, to) in line.iter().zip(&mut values[place]) {
+                    let words = pixel.as_chunks().0;
+                    let channel = |i: usize| f32::from_bits(u32::from_le_bytes(words[i])) / 255.0;
+                    *to = [channel(0), channel(1), channel(2)];
+                }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use std::cell::RefCell;
 
+    use super::super::partial::tests::form;
     use super::*;
 
     thread_local! {
@@ -131,16 +193,30 @@ pub(crate) mod tests {
     }
 
     /// What [`Assembly::take`] gets under test.
-    pub(super) fn tampered(rectangle: &Rectangle, bytes: &[u8], values: bool) -> Vec<u8> {
+    pub(super) fn tampered(rectangle: &Rectangle, bytes: &[u8], form: Pixels) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         let (pixels, verdict) = TAMPERED.with_borrow(Clone::clone);
         for [x, y] in pixels {
-            if !values && rectangle.band.contains(&y) && rectangle.columns.contains(&x) {
-                let row = rectangle.band.end - 1 - y;
-                let line = bytes.len() / rectangle.band.len();
-                let at = row as usize * line + 4 * (x - rectangle.columns.start) as usize;
-                bytes[at] ^= 1;
-                bytes[at + 3] = verdict;
+            if !rectangle.band.contains(&y) || !rectangle.columns.contains(&x) {
+                continue;
+            }
+            let row = (rectangle.band.end - 1 - y) as usize;
+            let column = (x - rectangle.columns.start) as usize;
+            match form {
+                Pixels::Packed => {
+                    let groups = rectangle.columns.len().div_ceil(GROUP as usize);
+                    let verdicts = 48 * groups * rectangle.band.len();
+                    bytes[48 * groups * row + 3 * column] ^= 1;
+                    let at = verdicts + 4 * (groups * row + column / 16) + column % 16 / 8;
+                    let bit = 1 << (column % 8);
+                    bytes[at] = bytes[at] & !bit | if verdict == 0 { 0 } else { bit };
+                }
+                Pixels::Words => {
+                    let at = row * (bytes.len() / rectangle.band.len()) + 4 * column;
+                    bytes[at] ^= 1;
+                    bytes[at + 3] = verdict;
+                }
+                Pixels::Values => {}
             }
         }
         bytes
@@ -149,7 +225,7 @@ pub(crate) mod tests {
     /// Two rectangles side by side, a band of two rows: every pixel at its place, and no doubtful one dropped.
     #[test]
     fn rectangles_side_by_side_are_one_band() {
-        let mut assembly = Assembly::new(5, false);
+        let mut assembly = Assembly::new(5, Pixels::Words);
         let mut rectangle = Rectangle {
             band: 10..12,
             columns: 0..3,
@@ -164,17 +240,73 @@ pub(crate) mod tests {
             pixel(6, 0),
             pixel(7, 0),
         ];
-        assembly.take(&rectangle, &Layout::of(4, 0, 6), left.as_flattened());
+        assembly.take(
+            &rectangle,
+            &Layout::new(&form(Pixels::Words, 0), 6),
+            left.as_flattened(),
+        );
         assert!(assembly.finished().is_none());
         rectangle.columns = 3..5;
         rectangle.last = true;
         let right = [pixel(3, 1), pixel(4, 0), pixel(8, 0), pixel(9, 2)];
-        assembly.take(&rectangle, &Layout::of(4, 0, 4), right.as_flattened());
+        assembly.take(
+            &rectangle,
+            &Layout::new(&form(Pixels::Words, 0), 4),
+            right.as_flattened(),
+        );
         let rendered = assembly.finished().unwrap();
         let rgb: Vec<u8> = (0..10).flat_map(|n| [n, n + 100, n + 200]).collect();
         assert_eq!(rendered.band.rgb, rgb);
         assert_eq!(rendered.band.rows, 10..12);
         assert_eq!(rendered.doubtful, [1, 3, 5, 9]);
         assert!(assembly.finished().is_none());
+    }
+
+    /// The same packed, of all widths around a group's: what rows are filled up with is dropped, verdicts and all.
+    #[test]
+    fn packed_rectangles_side_by_side_are_one_band() {
+        for widths in [[1, 1], [16, 1], [16, 16], [17, 15], [5, 48], [33, 64]] {
+            let width = widths[0] + widths[1];
+            let byte = |row: u32, column: u32, i: u32| (row * 71 + column * 3 + i) as u8;
+            let is_doubtful = |row: u32, column: u32| (row + column).is_multiple_of(5);
+            let mut assembly = Assembly::new(width, Pixels::Packed);
+            let mut start = 0;
+            for columns in widths {
+                let filled = columns.next_multiple_of(GROUP);
+                let mut bytes = Vec::new();
+                for row in 0..3 {
+                    let inside = (start..start + columns).flat_map(|c| (0..3).map(move |i| (c, i)));
+                    bytes.extend(inside.map(|(column, i)| byte(row, column, i)));
+                    bytes.extend(vec![77; 3 * (filled - columns) as usize]);
+                }
+                for (row, group) in
+                    (0..3).flat_map(|row| (0..filled / GROUP).map(move |g| (row, g)))
+                {
+                    // Whatever is behind the last column is in doubt.
+                    let bit = |i: u32| {
+                        let column = group * GROUP + i;
+                        u32::from(column >= columns || is_doubtful(row, start + column)) << i
+                    };
+                    bytes.extend((0..GROUP).map(bit).sum::<u32>().to_le_bytes());
+                }
+                let rectangle = Rectangle {
+                    band: 4..7,
+                    columns: start..start + columns,
+                    last: start + columns == width,
+                };
+                let layout = Layout::new(&form(Pixels::Packed, 0), u64::from(3 * filled));
+                assembly.take(&rectangle, &layout, &bytes);
+                start += columns;
+            }
+            let rendered = assembly.finished().unwrap();
+            let places = (0..3).flat_map(|row| (0..width).map(move |column| (row, column)));
+            let rgb = places
+                .clone()
+                .flat_map(|(row, c)| (0..3).map(move |i| byte(row, c, i)));
+            assert!(rendered.band.rgb == rgb.collect::<Vec<_>>(), "{widths:?}");
+            let doubtful = places.filter(|(row, column)| is_doubtful(*row, *column));
+            let doubtful: Vec<u32> = doubtful.map(|(row, c)| row * width + c).collect();
+            assert_eq!(rendered.doubtful, doubtful, "{widths:?}");
+        }
     }
 }

@@ -2,6 +2,7 @@
 //! handed on. No dispatch should take longer than about half a second: a real GPU's watchdog resets longer ones.
 
 pub(crate) mod assembly;
+pub(super) mod buffers;
 pub(crate) mod partial;
 mod plan;
 mod slot;
@@ -15,8 +16,10 @@ use super::pipeline::Pipeline;
 use crate::frame::StopRequested;
 use crate::jitter::Jitter;
 use crate::shader::constants::WORKGROUP;
+use crate::shader::form::Form;
 use crate::stopwatch::{Phase, Stopwatch};
 use assembly::Assembly;
+use partial::Layout;
 use plan::{Next, Plan};
 use slot::Slot;
 
@@ -93,11 +96,8 @@ pub fn run(
     watch: &mut Stopwatch,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
 ) -> Result<f64, GpuError> {
-    let (width, rows) = (frame.width, frame.rows.clone());
-    let largest = largest_dispatch(gpu, pipeline, width, &rows);
-    // Rows are filled up to whole invocations.
-    let filled =
-        largest + u64::from(pipeline.across - 1) * largest.min(u64::from(rows.end - rows.start));
+    let width = frame.width;
+    let (largest, filled) = largest_dispatch(gpu, &pipeline.form, width, &frame.rows);
     // The second one is made when the GPU is busy with the first, and only if there is more to do.
     let mut slots: [Option<Slot>; 2] = [None, None];
     let mut plan = Plan::new(
@@ -107,7 +107,7 @@ pub fn run(
         frame.band_rows,
         frame.dispatch_seconds,
     );
-    let mut assembly = Assembly::new(width, pipeline.pixel_bytes == 16);
+    let mut assembly = Assembly::new(width, pipeline.form.pixels);
     let mut kernels = 0.0;
     let mut turn = 0;
     let mut open = 0;
@@ -167,32 +167,49 @@ pub fn run(
 
 /// Most rows that a band may have whoever cut it: a dispatch has at least one workgroup's columns of all its rows.
 pub fn tallest(gpu: &Gpu, pipeline: &Pipeline, frame: &Frame<'_>) -> u32 {
-    let largest = largest_dispatch(gpu, pipeline, frame.width, &frame.rows);
+    let (largest, _) = largest_dispatch(gpu, &pipeline.form, frame.width, &frame.rows);
     let columns = frame.width.min(WORKGROUP);
     (largest / u64::from(columns)).min(u64::from(MAX_ROWS)) as u32
 }
 
-/// Most pixels that one dispatch may have here.
-fn largest_dispatch(gpu: &Gpu, pipeline: &Pipeline, width: u32, rows: &Range<u32>) -> u64 {
+/// Makes the large buffers for such a frame, unless they are there: meanwhile the shader may be compiled.
+pub fn prepare(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) {
+    let (largest, filled) = largest_dispatch(gpu, form, width, rows);
+    let pixels = u64::from(width) * u64::from(rows.end - rows.start);
+    let pairs = if largest < pixels { 2 } else { 1 };
+    gpu.buffers
+        .prepare(gpu, pairs, Layout::new(form, filled).bytes);
+}
+
+/// Most pixels that one dispatch may have here; and the same with those that its rows are filled up with.
+fn largest_dispatch(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) -> (u64, u64) {
     let limits = gpu.device.limits();
     let bytes = limits
         .max_storage_buffer_binding_size
         .min(limits.max_buffer_size)
-        - if pipeline.partial_words > 0 {
+        - if form.partial_words > 0 {
             partial::MOST
         } else {
             0
         };
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
-    let offsets = u64::from(pipeline.offsets) * OFFSET_BYTES;
+    let offsets = u64::from(form.offsets) * OFFSET_BYTES;
+    // With what rows are filled up with.
+    let filled = u64::from(width.next_multiple_of(form.group()));
+    let most = MAX_PIXELS.min(bytes / form.group_bytes() * u64::from(form.group()));
+    let most = (most * u64::from(width) / filled).max(1);
     // A dispatch has at least one row of workgroups, whatever the offsets take; wgpu reports an error if that is too
     // much.
     let by_offsets = MAX_OFFSETS
         .checked_div(offsets)
         .unwrap_or(u64::MAX)
         .max(u64::from(WORKGROUP * WORKGROUP));
-    MAX_PIXELS
-        .min(bytes / pipeline.pixel_bytes)
-        .min(by_offsets)
-        .min(pixels)
+    let largest = most.min(by_offsets).min(pixels);
+    // A dispatch of several rows has as many as fit whole, and each is filled up to whole groups.
+    let most_rows = (largest / u64::from(width)).max(1);
+    let group = u64::from(form.group());
+    (
+        largest,
+        (largest + (group - 1) * most_rows).next_multiple_of(group),
+    )
 }

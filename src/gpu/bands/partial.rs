@@ -5,8 +5,8 @@
 
 use super::plan::Rectangle;
 use crate::frame::Part;
-use crate::gpu::pipeline::Pipeline;
 use crate::shader::feature_set::PARTIAL_HEAD;
+use crate::shader::form::Form;
 
 /// Bytes of the counter of records, before the pixels.
 const COUNTER: u64 = 4;
@@ -17,8 +17,8 @@ pub(super) const MOST: u64 = COUNTER + MAX_BYTES;
 /// So many records have room in any dispatch that has as many pixels.
 const LEAST: u64 = 256;
 
-/// What a dispatch leaves in its buffer: the counter of records, the pixels, the records. Pixels alone where there are
-/// no records.
+/// Where a dispatch leaves what in its buffer: the counter of records, the pixels, the records (see
+/// [`Form`]). Pixels alone where there are no records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Layout {
     /// Bytes of the counter.
@@ -34,12 +34,9 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Of a dispatch of so many pixels.
-    pub(super) fn new(pipeline: &Pipeline, pixels: u64) -> Self {
-        Self::of(pipeline.pixel_bytes, pipeline.partial_words, pixels)
-    }
-
-    pub(super) fn of(pixel_bytes: u64, words: u32, pixels: u64) -> Self {
+    /// Of a dispatch of so many pixels, with those that rows are filled up with.
+    pub(super) fn new(form: &Form, pixels: u64) -> Self {
+        let words = form.partial_words;
         let (counter, room) = match words {
             0 => (0, 0),
             words => (COUNTER, room(pixels, words)),
@@ -47,10 +44,10 @@ impl Layout {
         let record = 4 * u64::from(words);
         Self {
             counter,
-            pixels: pixels * pixel_bytes,
+            pixels: form.bytes(pixels),
             words,
             room,
-            bytes: counter + pixels * pixel_bytes + u64::from(room) * record,
+            bytes: counter + form.bytes(pixels) + u64::from(room) * record,
         }
     }
 
@@ -141,6 +138,7 @@ pub(crate) mod tests {
     use std::cell::Cell;
 
     use super::*;
+    use crate::shader::form::Pixels;
 
     /// What may be wrong with every record.
     #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,6 +187,16 @@ pub(crate) mod tests {
         }
     }
 
+    /// Of a shader that makes a pixel an invocation.
+    pub(in crate::gpu::bands) fn form(pixels: Pixels, partial_words: u32) -> Form {
+        Form {
+            pixels,
+            across: 1,
+            offsets: 0,
+            partial_words,
+        }
+    }
+
     #[test]
     fn half_of_the_pixels_have_room_and_the_list_is_bounded() {
         assert_eq!(room(1, 8), 1);
@@ -196,10 +204,12 @@ pub(crate) mod tests {
         assert_eq!(room(4000, 8), 2000);
         assert_eq!(u64::from(room(2 << 20, 8)) * 32, MAX_BYTES);
         for words in [8, 39] {
-            let layout = Layout::of(4, words, 2 << 20);
-            assert!(layout.bytes <= layout.pixels + MOST);
+            for pixels in [Pixels::Packed, Pixels::Words] {
+                let layout = Layout::new(&form(pixels, words), 2 << 20);
+                assert!(layout.bytes <= layout.pixels + MOST);
+            }
         }
-        assert_eq!(Layout::of(16, 0, 10).bytes, 160);
+        assert_eq!(Layout::new(&form(Pixels::Values, 0), 10).bytes, 160);
     }
 
     /// Two rectangles side by side, records in any order, one list too long for its room, one place that is none.

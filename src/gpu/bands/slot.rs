@@ -1,9 +1,12 @@
 //! The buffers of one dispatch under way: two of these take turns.
 
+use std::sync::Arc;
+
 use super::super::GpuError;
 use super::super::device::Gpu;
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
+use super::buffers::{BufferPool, PixelBuffers};
 use super::partial;
 use super::plan::Rectangle;
 use super::{Frame, OFFSET_BYTES};
@@ -16,8 +19,11 @@ use crate::stopwatch::{Phase, Stopwatch};
 pub(super) struct Slot {
     dispatch: wgpu::Buffer,
     offsets: Option<wgpu::Buffer>,
-    pixels: wgpu::Buffer,
-    staging: wgpu::Buffer,
+    buffers: PixelBuffers,
+    /// Whether nothing is pending on them.
+    is_clean: bool,
+    /// Where they go in the end.
+    pool: Arc<BufferPool>,
     bind_group: wgpu::BindGroup,
     clock: Option<Clock>,
     pending: Option<(wgpu::SubmissionIndex, Rectangle, partial::Layout)>,
@@ -42,7 +48,10 @@ impl Slot {
             };
             gpu.device.create_buffer(&descriptor)
         };
-        let size = partial::Layout::new(pipeline, largest).bytes;
+        let form = &pipeline.form;
+        let buffers = gpu
+            .buffers
+            .take(gpu, partial::Layout::new(form, largest).bytes);
         let dispatch = buffer(
             "dispatch",
             (size_of::<Dispatch>() + size_of::<CameraNumbers>()) as u64,
@@ -53,18 +62,6 @@ impl Slot {
             gpu.queue
                 .write_buffer(&dispatch, behind, bytemuck::bytes_of(camera));
         }
-        let pixels = buffer(
-            "pixels",
-            size,
-            wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::COPY_SRC
-                | wgpu::BufferUsages::COPY_DST,
-        );
-        let staging = buffer(
-            "staging",
-            size,
-            wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        );
         let clock = gpu.timestamps.then(|| Clock {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("clock"),
@@ -82,20 +79,21 @@ impl Slot {
                 wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             ),
         });
-        let offsets = (pipeline.offsets > 0).then(|| {
-            let size = largest * u64::from(pipeline.offsets) * OFFSET_BYTES;
+        let offsets = (form.offsets > 0).then(|| {
+            let size = largest * u64::from(form.offsets) * OFFSET_BYTES;
             buffer(
                 "offsets",
                 size,
                 wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             )
         });
-        let bind_group = pipeline.bind(gpu, &dispatch, &pixels, offsets.as_ref());
+        let bind_group = pipeline.bind(gpu, &dispatch, &buffers.pixels, offsets.as_ref());
         Self {
             dispatch,
             offsets,
-            pixels,
-            staging,
+            buffers,
+            is_clean: true,
+            pool: Arc::clone(&gpu.buffers),
             bind_group,
             clock,
             pending: None,
@@ -111,8 +109,9 @@ impl Slot {
     ) {
         let columns = rectangle.columns.end - rectangle.columns.start;
         let rows = rectangle.band.end - rectangle.band.start;
-        let pitch = columns.next_multiple_of(pipeline.across);
-        let layout = partial::Layout::new(pipeline, u64::from(pitch) * u64::from(rows));
+        let form = &pipeline.form;
+        let pitch = columns.next_multiple_of(form.group());
+        let layout = partial::Layout::new(form, u64::from(pitch) * u64::from(rows));
         let dispatch = Dispatch {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
@@ -125,7 +124,7 @@ impl Slot {
             gpu.queue.write_buffer(
                 offsets,
                 0,
-                bytemuck::cast_slice(&rectangle.offsets(frame.jitter, pipeline.offsets)),
+                bytemuck::cast_slice(&rectangle.offsets(frame.jitter, form.offsets)),
             );
         }
         let mut encoder = gpu
@@ -140,7 +139,7 @@ impl Slot {
                 end_of_pass_write_index: Some(1),
             });
         if layout.counter > 0 {
-            encoder.clear_buffer(&self.pixels, 0, Some(layout.counter));
+            encoder.clear_buffer(&self.buffers.pixels, 0, Some(layout.counter));
         }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -149,34 +148,30 @@ impl Slot {
             });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &self.bind_group, &[]);
-            let groups = [pitch / pipeline.across, rows].map(|n| n.div_ceil(WORKGROUP));
+            let groups = [pitch / form.across, rows].map(|n| n.div_ceil(WORKGROUP));
             pass.dispatch_workgroups(groups[0], groups[1], 1);
         }
         let bytes = layout.bytes;
-        encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.staging, 0, bytes);
+        let PixelBuffers { pixels, staging } = &self.buffers;
+        encoder.copy_buffer_to_buffer(pixels, 0, staging, 0, bytes);
         if let Some(canvas) = frame.canvas {
             let (at, size) = (
                 [rectangle.columns.start, rectangle.band.end],
                 [columns, rows],
             );
-            canvas.take(
-                &mut encoder,
-                (&self.pixels, layout.counter),
-                pitch,
-                at,
-                size,
-            );
+            canvas.take(&mut encoder, (pixels, layout.counter), pitch, at, size);
         }
         if let Some(clock) = &self.clock {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
             encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
         }
         let index = gpu.submit(encoder);
-        self.staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
+        staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
         if let Some(clock) = &self.clock {
             clock.staging.map_async(wgpu::MapMode::Read, .., |_| ());
         }
         self.pending = Some((index, rectangle, layout));
+        self.is_clean = false;
     }
 
     /// Waits for the dispatch and takes its pixels; returns how many there were, and the seconds that the kernel took:
@@ -209,13 +204,24 @@ impl Slot {
         };
         let pixels = rectangle.pixels();
         let view = self
+            .buffers
             .staging
             .get_mapped_range(..layout.bytes)
             .map_err(|error| gpu.lost(&error))?;
         assembly.take(&rectangle, &layout, &view);
         drop(view);
-        self.staging.unmap();
+        self.buffers.staging.unmap();
+        self.is_clean = true;
         Ok((pixels, kernel))
+    }
+}
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        // What the device may still be at work on is left to wgpu.
+        if self.is_clean {
+            self.pool.give(self.buffers.clone());
+        }
     }
 }
 

@@ -143,7 +143,7 @@ fn all_time_of_a_picture_is_in_the_phases_of_its_report() {
 
 #[test]
 fn so_is_that_of_a_picture_on_an_open_device() {
-    let gpu = adapters::shared(None).unwrap();
+    let gpu = adapters::open(None).unwrap();
     let timed = Timed::new(|| {
         render_live(
             &hard_scene(),

@@ -103,8 +103,15 @@ fn bindings_are_as_the_table_says() {
         scenes.push(vec![ingredient, ManyPlanes, Lamp, Mirror]);
     }
     let mut seen = BTreeSet::new();
-    for ingredients in scenes {
-        let (wgsl, set) = composed(&ingredients);
+    let both = scenes
+        .iter()
+        .flat_map(|scene| [(scene, false), (scene, true)]);
+    for (ingredients, for_a_file) in both {
+        let (packed, mut set) = packed(ingredients);
+        if for_a_file {
+            set = set.for_a_file(false);
+        }
+        let wgsl = compose(&packed, &set, Entry::Picture);
         let features = set.features();
         let module = assert_valid(&wgsl, "bindings");
         let declared: BTreeSet<(u32, &str)> = module

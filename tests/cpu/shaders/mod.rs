@@ -108,8 +108,9 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
     // Together they have every feature, so that none is left out above.
     let found: BTreeSet<Feature> = every.iter().flat_map(FeatureSet::features).collect();
     for feature in Feature::ALL {
-        // Only fast pictures have these, or scenes without mirrors, glass or lights.
+        // Only fast pictures have these, files, or scenes without mirrors, glass or lights.
         let elsewhere = [
+            Feature::Packed,
             Feature::AnyHit,
             Feature::Moving,
             Feature::Values,
@@ -143,6 +144,11 @@ fn every_scene_of_ours_is_valid() {
             assert_valid(
                 &compose(&packed, &features, Entry::Picture),
                 &path.display().to_string(),
+            );
+            let packed_pixels = features.clone().for_a_file(false);
+            assert_valid(
+                &compose(&packed, &packed_pixels, Entry::Picture),
+                &format!("{} for a file", path.display()),
             );
             if precision == Precision::Fast {
                 let moving = compose(&packed, &features.while_moving(), Entry::Picture);

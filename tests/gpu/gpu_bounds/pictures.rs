@@ -114,7 +114,7 @@ pub(crate) fn count(
     }
     let pipeline = Pipeline::new(gpu, &packed, &features, &wgsl).unwrap();
     let [width, height] = scene.camera.pixeldim;
-    let pitch = width.next_multiple_of(pipeline.across);
+    let pitch = width.next_multiple_of(pipeline.form.group());
     let dispatch = Dispatch {
         first: [0, height - 1],
         size: [width, height],
@@ -136,7 +136,7 @@ pub(crate) fn count(
         mapped_at_creation: false,
     });
     let group = pipeline.bind(gpu, &dispatch, &pixels, None);
-    let groups = [pitch / pipeline.across, height].map(|n| n.div_ceil(WORKGROUP));
+    let groups = [pitch / pipeline.form.across, height].map(|n| n.div_ceil(WORKGROUP));
     let left = gpu
         .run_once(&pipeline.pipeline, &group, groups, &pixels)
         .unwrap();

@@ -13,7 +13,7 @@ mod triangles;
 
 use std::time::Instant;
 
-use plumb::render::{Backend, Error, SamplePattern, Settings, render};
+use plumb::render::{Backend, Error, SamplePattern, Settings, render_with};
 use plumb::scene::{Scene, parse};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -81,7 +81,8 @@ fn try_scene(plan: &Plan, gpu_too: bool) -> Tried {
             continue;
         }
         let mut rgb = Vec::new();
-        let rendered = render(&scene, &settings(plan, backend), &mut |band| {
+        let wanted = settings(plan, backend);
+        let rendered = render_with(&scene, &wanted, common::devices(), &mut |band| {
             rgb.extend_from_slice(&band.rgb);
             Ok(())
         });
