@@ -9,6 +9,11 @@ use serde::Serialize;
 
 use crate::jitter::{Course, Jitter};
 
+/// More samples than this show nothing more, and take hours.
+pub const MAX_SAMPLES: u32 = 65_536;
+/// The offsets of this many samples are held in memory at a time, for a row: a quarter of a gigabyte a thread.
+const MOST_COURSE_SAMPLES: u64 = 1 << 24;
+
 /// What to render, beyond what the scene says.
 #[derive(Debug, Clone)]
 pub struct Settings {
@@ -84,6 +89,19 @@ impl Settings {
                 SamplePattern::Course => Jitter::Course(Course::new(width, end, samples)),
             },
         }
+    }
+
+    /// Why a picture of this width cannot be rendered so: it would take memory without end.
+    pub fn fault(&self, width: u32) -> Option<String> {
+        let Supersampling { samples, spread } = self.supersampling()?;
+        let too_many = spread == SamplePattern::Course
+            && u64::from(width) * u64::from(samples) > MOST_COURSE_SAMPLES;
+        too_many.then(|| {
+            format!(
+                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {samples} \
+                 samples has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory"
+            )
+        })
     }
 
     /// How the scene is looked at.

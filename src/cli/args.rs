@@ -10,15 +10,10 @@ use plumb::cpu::debug::Shown;
 use plumb::cpu::trace::Limits;
 use plumb::render::{Backend, Precision, SamplePattern, Settings};
 use plumb::scene::Scene;
-use plumb::settings::Supersampling;
+use plumb::settings::MAX_SAMPLES;
 
 use super::cache;
 use super::values::{Rows, path, rows, size, threads, tolerance, whole};
-
-/// More samples than this show nothing more, and take hours.
-const MOST_SAMPLES: u32 = 65_536;
-/// The offsets of this many samples are held in memory at a time, for a row: a quarter of a gigabyte a thread.
-const MOST_COURSE_SAMPLES: u64 = 1 << 24;
 
 /// What changes which picture a scene is.
 #[derive(Debug, Clone, clap::Args)]
@@ -34,7 +29,7 @@ pub(crate) struct PictureOptions {
         long,
         value_name = "N",
         default_value_t = 1,
-        value_parser = whole(1..=MOST_SAMPLES),
+        value_parser = whole(1..=MAX_SAMPLES),
         long_help = "\
 Samples a pixel, 1 to 65536. 1 is a ray through its middle; N are N rays spread over it, and the mean of their colours \
 is taken, which smooths edges and takes N times as long. 16 is plenty for most pictures. Where a floor or wall runs \
@@ -108,17 +103,10 @@ impl PictureOptions {
 
     /// Refuses what would take memory without end; `scene` has its final size.
     pub(crate) fn check(&self, scene: &Scene) -> Result<()> {
-        let width = scene.camera.pixeldim[0];
-        if let Some(Supersampling { samples, spread }) = self.settings().supersampling()
-            && spread == SamplePattern::Course
-            && u64::from(width) * u64::from(samples) > MOST_COURSE_SAMPLES
-        {
-            bail!(
-                "--jitter course makes the samples of a whole row at once, and a row of {width} pixels with {samples} \
-                 samples has more than {MOST_COURSE_SAMPLES}: take fewer, or --jitter hash, which needs no memory"
-            );
+        match self.settings().fault(scene.camera.pixeldim[0]) {
+            Some(fault) => bail!(fault),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -1,11 +1,12 @@
 //! `plumb check`: every error of every scene file; reads and checks, and touches no GPU.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use plumb::diagnostic::visible_text;
 use plumb::probe::digits::count;
-use plumb::scene::{LoadError, Scene, remarks};
+use plumb::render::Settings;
+use plumb::scene::{LoadError, Scene};
 use serde_json::{Value, json};
 
 use super::{Answer, say, source};
@@ -31,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut after_errors = false;
     for (place, path) in args.scenes.iter().enumerate() {
         let name = source::name(path);
-        let loaded = source::load(path);
+        let loaded = load(path);
         bad += usize::from(loaded.is_err());
         if args.json {
             reports.push(report(&name, &loaded));
@@ -43,10 +44,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         }
         after_errors = loaded.is_err();
         match loaded {
-            Ok(scene) => {
+            Ok((scene, remarks)) => {
                 let mut lines = vec![format!("{name}: ok ({})", summary(&scene))];
-                let notes = remarks(&scene).into_iter();
-                lines.extend(notes.map(|remark| format!("  note: {remark}")));
+                lines.extend(remarks.iter().map(|remark| format!("  note: {remark}")));
                 for line in lines {
                     // Names of files and materials hold what they like.
                     say::data(&format!("{}\n", visible_text(&line)))?;
@@ -71,6 +71,14 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     }
 }
 
+/// A scene, and what may surprise in its picture.
+fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
+    let (scene, text) = source::load_with_text(path)?;
+    let tolerance = Settings::default().screen_tolerance;
+    let remarks = source::remarks(&scene, &text, tolerance);
+    Ok((scene, remarks))
+}
+
 /// `3 objects, 0 lights, 640×480`.
 fn summary(scene: &Scene) -> String {
     let [width, height] = scene.camera.pixeldim;
@@ -82,9 +90,9 @@ fn summary(scene: &Scene) -> String {
 }
 
 /// One file's entry in the array.
-fn report(name: &str, loaded: &Result<Scene>) -> Value {
+fn report(name: &str, loaded: &Result<(Scene, Vec<String>)>) -> Value {
     match loaded {
-        Ok(scene) => json!({
+        Ok((scene, remarks)) => json!({
             "file": name,
             "ok": true,
             "objects": scene.objects.len(),
@@ -92,7 +100,7 @@ fn report(name: &str, loaded: &Result<Scene>) -> Value {
             "materials": scene.materials.len(),
             "textures": scene.textures.len(),
             "pixeldim": scene.camera.pixeldim,
-            "notes": remarks(scene),
+            "notes": remarks,
             "errors": [],
         }),
         Err(error) => {

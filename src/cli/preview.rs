@@ -27,11 +27,12 @@ file; Ctrl+S writes the numbers into the file and touches nothing else in it.
 Closing asks before changes are lost.
 
 EXAMPLES
+  plumb preview                a page to open a scene from, or to begin one
   plumb preview scene.txt
   plumb preview scene.txt --size 1280x960 --samples 16")]
 pub(crate) struct Args {
-    /// The scene file
-    pub(crate) scene: PathBuf,
+    /// The scene file; without, the window says how to come to one
+    pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureOptions,
     /// Part of the name of the GPU adapter to use, in any case of letters (see `plumb doctor`); without it
@@ -49,21 +50,24 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
 
     use super::{SOFTWARE, cache, source};
 
-    if source::is_stdin(&args.scene) {
-        bail!("a window follows a file, and stdin is none: save the scene, and name its file");
-    }
+    let usual = args.picture.size.unwrap_or([640, 480]);
     // What cannot be read now is told here, where it is asked for; mistakes in it are shown in the window.
-    let room = match plumb::scene::load(&args.scene) {
-        Ok(mut scene) => {
+    let room = match args.scene.as_deref().map(plumb::scene::load) {
+        _ if args.scene.as_deref().is_some_and(source::is_stdin) => {
+            bail!("a window follows a file, and stdin is none: save the scene, and name its file")
+        }
+        None => usual,
+        Some(Ok(mut scene)) => {
             args.picture.apply(&mut scene);
             args.picture.check(&scene)?;
             scene.camera.pixeldim
         }
-        Err(plumb::scene::LoadError::Scene(_)) => args.picture.size.unwrap_or([640, 480]),
-        Err(error) => return Err(error.into()),
+        Some(Err(plumb::scene::LoadError::Scene(_))) => usual,
+        Some(Err(error)) => return Err(error.into()),
     };
     run(Options {
         path: args.scene.clone(),
+        recent: cache::state().map(|folder| folder.join("recent")),
         size: args.picture.size,
         room,
         settings: Settings {

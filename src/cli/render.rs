@@ -16,7 +16,7 @@ use plumb::files::is_stream;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
 use plumb::render::{self, Backend, Devices, PixelFault, Report, Settings};
-use plumb::scene::{Scene, list_model, remarks};
+use plumb::scene::{Scene, list_model};
 use serde::Serialize;
 
 use super::args::RenderOptions;
@@ -53,6 +53,8 @@ struct RenderCommand<'a> {
     /// The scene's file, if it has one.
     file: Option<&'a Path>,
     scene: Scene,
+    /// What may surprise in its picture.
+    remarks: Vec<String>,
     options: &'a RenderOptions,
 }
 
@@ -73,9 +75,9 @@ struct JsonReport<'a> {
 pub(crate) fn run(args: &Args) -> Result<Answer> {
     start_threads(&args.options);
     let name = source::name(&args.scene);
-    let scene = source::load(&args.scene)?;
+    let loaded = source::load_with_text(&args.scene)?;
     let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
-    RenderCommand::new(&name, file, scene, &args.options).run()
+    RenderCommand::new(&name, file, loaded, &args.options).run()
 }
 
 /// Renders the scene on stdin, as the notes' program does: lists the model on stderr, writes the picture to stdout.
@@ -84,10 +86,10 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
         return Ok(Answer::Nothing);
     }
     start_threads(options);
-    let Some(scene) = source::load_stdin()? else {
+    let Some(loaded) = source::load_stdin()? else {
         return Ok(Answer::Nothing);
     };
-    let command = RenderCommand::new(source::STDIN, None, scene, options);
+    let command = RenderCommand::new(source::STDIN, None, loaded, options);
     // What is refused is refused before the listing, which may be long.
     command.check(&command.target()?)?;
     if command.talks() {
@@ -117,16 +119,23 @@ impl<'a> RenderCommand<'a> {
     fn new(
         name: &'a str,
         file: Option<&'a Path>,
-        mut scene: Scene,
+        (mut scene, text): (Scene, Vec<u8>),
         options: &'a RenderOptions,
     ) -> Self {
         options.picture.apply(&mut scene);
-        Self {
+        let mut command = Self {
             name,
             file,
             scene,
+            remarks: Vec::new(),
             options,
+        };
+        // Now, so that the text need not be kept.
+        if command.talks() {
+            let tolerance = options.picture.screen_tolerance;
+            command.remarks = source::remarks(&command.scene, &text, tolerance);
         }
+        command
     }
 
     /// Whether stderr is for talk: not if silence was asked for, nor if the report is the only thing to be there.
@@ -207,9 +216,7 @@ impl<'a> RenderCommand<'a> {
         };
         let finished = outputs.finish()?;
         if self.talks() {
-            remarks(&self.scene)
-                .iter()
-                .for_each(|remark| say::note(remark));
+            self.remarks.iter().for_each(|remark| say::note(remark));
             told(&report).iter().for_each(|line| say::note(line));
         }
         self.list(&settings, &report)?;

@@ -30,18 +30,32 @@ pub(crate) fn file(path: Option<&Path>) -> Option<&Path> {
 
 /// Loads the scene from the file, or from stdin.
 pub(crate) fn load(path: &Path) -> Result<Scene> {
+    load_with_text(path).map(|(scene, _)| scene)
+}
+
+/// The same with its text.
+pub(crate) fn load_with_text(path: &Path) -> Result<(Scene, Vec<u8>)> {
     if is_stdin(path) {
-        Ok(scene::load_from(STDIN, io::stdin().lock(), Path::new(""))?)
+        let stdin = io::stdin().lock();
+        Ok(scene::load_from_with_text(STDIN, stdin, Path::new(""))?)
     } else {
-        Ok(scene::load(path)?)
+        Ok(scene::load_with_text(path)?)
     }
 }
 
-/// The scene on stdin, or none if nothing is piped in. Its textures are looked for from the current folder.
-pub(crate) fn load_stdin() -> Result<Option<Scene>> {
+/// What may surprise in the picture of a scene with this text.
+pub(crate) fn remarks(scene: &Scene, text: &[u8], screen_tolerance: f64) -> Vec<String> {
+    let places = scene::places(text);
+    scene::remarks(scene, screen_tolerance, &scene::lines_of(text, &places))
+}
+
+/// The scene on stdin and its text, or none if nothing is piped in. Its textures are looked for from the current
+/// folder.
+pub(crate) fn load_stdin() -> Result<Option<(Scene, Vec<u8>)>> {
     let mut stdin = io::stdin().lock();
     if stdin.fill_buf().context("cannot read stdin")?.is_empty() {
         return Ok(None);
     }
-    Ok(Some(scene::load_from(STDIN, stdin, Path::new(""))?))
+    let loaded = scene::load_from_with_text(STDIN, stdin, Path::new(""))?;
+    Ok(Some(loaded))
 }

@@ -7,7 +7,9 @@ mod asking;
 mod doing;
 mod hands;
 mod leaving;
+mod opening;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -17,20 +19,26 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Rect, Ui};
 
 use super::canvases::Canvases;
+use super::chooser::{Chooser, Purpose};
 use super::handles::Grabbed;
+use super::hints::Hints;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
 use super::keys::Command;
 use super::overlay::{self, Chosen, SaveAs};
+use super::panels::Panels;
 use super::picture::{self, Showing};
+use super::recent::Recent;
+use super::rendering::Rendering;
 use super::screen::{self, ObjectMap};
 use super::session::{self, Session};
 use super::shared_session::SharedSession;
 use super::side::{self, Side};
+use super::start;
 use super::status::{self, Line};
-use super::watch::Watcher;
+use super::watch::SceneWatch;
 use super::worker::{self, PreviewPicture, Worker};
-use super::{Devices, Options, inspector};
+use super::{Devices, Options, inspector, legend};
 use crate::gpu::device::Gpu;
 use crate::scene::EntityId;
 use leaving::Leaving;
@@ -48,6 +56,8 @@ enum Event {
     Rendered(worker::News),
     Inspected(Answer),
     Saved(Result<String, String>),
+    /// What the desktop's file dialog gave.
+    Browsed(Purpose, Option<PathBuf>),
 }
 
 /// Tells the window, and wakes it.
@@ -79,18 +89,26 @@ pub(super) struct App {
     worker: Worker,
     inspector: Inspector,
     /// Watches as long as it lives.
-    _watcher: Watcher,
+    watch: Option<SceneWatch>,
+    recent: Recent,
+    chooser: Option<Chooser>,
+    /// The scene to be opened next, where it is not the window that is to be closed.
+    next: Option<PathBuf>,
+    /// Pictures of wishes up to this are of a scene that was shown before.
+    since: u64,
     /// The picture that is shown.
     picture: Option<PreviewPicture>,
     /// Why the newest wish could not be fulfilled.
     failed: Option<String>,
     showing: Showing,
     side: Side,
-    side_open: bool,
     panel: Panel,
-    panel_open: bool,
+    panels: Panels,
+    hints: Hints,
+    /// Of which wish and which text the hints are.
+    hinted: Option<(u64, Arc<Vec<u8>>)>,
     /// What was asked last: of which wish, which pixel; whether the picture stays, whether which objects are seen.
-    asked: Option<(u64, Option<[u32; 2]>, [bool; 3])>,
+    asked: Option<(u64, Option<[u32; 2]>, [bool; 4])>,
     seen: Option<(u64, Arc<ObjectMap>)>,
     outlined: Option<(u64, EntityId)>,
     over: Option<[u32; 2]>,
@@ -145,18 +163,12 @@ impl App {
             Inspector::new(Arc::clone(&gpu), options.settings.clone(), move |answer| {
                 tell.tell(Event::Inspected(answer))
             })?;
-        let tell = teller.clone();
-        let session = Session::new(options.path.clone(), options.size);
+        let mut session = Session::new(PathBuf::new(), options.size);
+        session.render_as(Rendering::of(&options.settings));
         let shared = SharedSession::new(session, Arc::clone(&worker.wishes));
-        let file = shared.clone();
+        let recent = Recent::read(options.recent.clone());
         let path = options.path.clone();
-        let watcher = Watcher::new(&options.path, move |news| {
-            // What is rendered now wakes the window when it is there.
-            if !file.news(session::News::read(&path, news)) {
-                tell.tell(Event::File);
-            }
-        })?;
-        Ok(Self {
+        let mut app = Self {
             shared,
             gpu,
             window,
@@ -165,14 +177,19 @@ impl App {
             teller,
             worker,
             inspector,
-            _watcher: watcher,
+            watch: None,
+            recent,
+            chooser: None,
+            next: None,
+            since: 0,
             picture: None,
             failed: None,
             showing: Showing::default(),
             side: Side::default(),
-            side_open: true,
             panel: Panel::default(),
-            panel_open: true,
+            panels: Panels::default(),
+            hints: Hints::default(),
+            hinted: None,
             asked: None,
             seen: None,
             outlined: None,
@@ -190,7 +207,11 @@ impl App {
             said: None,
             came: Vec::new(),
             title: String::new(),
-        })
+        };
+        if let Some(path) = path {
+            app.turn_to(path);
+        }
+        Ok(app)
     }
 
     fn say(&mut self, text: impl Into<String>) {
@@ -202,6 +223,8 @@ impl App {
         while let Ok(event) = self.events.try_recv() {
             match event {
                 Event::File => {}
+                Event::Rendered(worker::News::Picture(picture)) if picture.number <= self.since => {
+                }
                 Event::Rendered(worker::News::Picture(picture)) => {
                     self.failed = None;
                     self.came.push(Instant::now());
@@ -214,10 +237,11 @@ impl App {
                     self.picture = Some(*picture);
                 }
                 Event::Rendered(worker::News::Failed { number, why }) => {
-                    if number == self.shared.lock().wished {
+                    if number == self.shared.lock().wished && number > self.since {
                         self.failed = Some(why);
                     }
                 }
+                Event::Browsed(purpose, path) => self.browsed(purpose, path),
                 Event::Inspected(answer) => self.answered(answer),
                 Event::Saved(saved) => {
                     if saved.is_err() {
@@ -253,9 +277,13 @@ impl App {
         } else {
             "*"
         };
-        let mut title = format!("{}{star} – plumb", session.name());
+        let mut title = match session.name() {
+            name if name.is_empty() => "plumb".to_owned(),
+            name => format!("{name}{star} – plumb"),
+        };
         if let Some(trouble) = &session.trouble {
             title.push_str(match trouble {
+                session::Trouble::Mistakes(it) if it.count > 1 => " – mistakes",
                 session::Trouble::Mistakes(_) => " – mistake",
                 session::Trouble::Gone => " – gone",
                 session::Trouble::Unreadable(_) => " – cannot be read",
@@ -274,6 +302,10 @@ impl App {
         let frames = self.frames();
         let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
         let picture = self.picture.as_ref();
+        let state = self.shared.lock();
+        let rendering = state.session.rendering().options();
+        let trouble = state.session.trouble.is_some();
+        drop(state);
         let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
         let scale = f64::from(ui.ctx().pixels_per_point());
         let placed = self.area.map(|rect| {
@@ -289,6 +321,8 @@ impl App {
                 let bytes = picture.and_then(|picture| picture::bytes(picture, pixel));
                 Some((pixel, bytes?))
             }),
+            rendering,
+            trouble,
             said: said.map(|(text, _)| text.clone()),
         };
         if line.doing.is_some() || frames.is_some() || said.is_some() {
@@ -302,6 +336,7 @@ impl App {
 
     /// What is being done, if anything.
     fn doing(&self) -> Option<String> {
+        self.options.path.as_ref()?;
         let state = self.shared.lock();
         if state.wished == 0 {
             // Nothing is wished for while there is no scene; what is wrong with the file is said elsewhere.
@@ -318,6 +353,12 @@ impl App {
     }
 
     fn middle(&mut self, ui: &mut Ui) {
+        if self.options.path.is_none() {
+            if let Some(start) = start::show(ui, self.recent.scenes()) {
+                self.start(start);
+            }
+            return;
+        }
         let rect = ui.available_rect_before_wrap();
         let trouble = self.shared.lock().session.trouble.clone();
         match &self.picture {
@@ -326,6 +367,9 @@ impl App {
                 let (mouse, placed, area) = picture::show(ui, picture, &mut self.showing, held);
                 self.area = Some(area);
                 self.take_mouse(ui, &mouse, &placed);
+                if self.showing.verdicts {
+                    legend::show(ui, area);
+                }
             }
             None => {
                 if let (Some(doing), None, None) = (self.doing(), &trouble, &self.failed) {
@@ -342,6 +386,8 @@ impl App {
 
     fn dialogs(&mut self, context: &Context) {
         overlay::help(context, &mut self.help_open);
+        self.show_chooser(context);
+        self.take_dropped(context);
         let chosen = self.save_as.as_mut().map(|dialog| dialog.show(context));
         match chosen {
             Some(Chosen::Save) => {
@@ -364,10 +410,14 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.take_keys(&context);
+        self.panels.room = ui.max_rect().size();
+        let room = self.panels.room;
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
-        if self.side_open {
+        let has_scene = self.options.path.is_some();
+        if self.panels.side() && has_scene {
             let wanted = egui::Panel::right("side")
                 .default_size(side::WIDTH)
+                .max_size(Panels::most(room.x))
                 .show(ui, |ui| {
                     side::show(ui, &mut self.side, &self.shared.lock().session)
                 });
@@ -377,12 +427,16 @@ impl eframe::App for App {
         } else {
             self.side.hovered = None;
         }
-        if self.panel_open {
+        if self.hints.is_open() {
+            egui::Panel::bottom("hints").show(ui, |ui| self.hints.show(ui, room));
+        }
+        if self.panels.inspector() && has_scene {
             let pixel = self.panel.held.or(self.over);
             let verdict = pixel.and_then(|pixel| self.verdict(pixel));
             let let_go = egui::Panel::bottom("inspector")
                 .resizable(true)
                 .default_size(inspector::HEIGHT)
+                .max_size(Panels::most(room.y))
                 .show(ui, |ui| inspector::show(ui, &self.panel, pixel, verdict));
             if let_go.inner {
                 self.panel.held = None;

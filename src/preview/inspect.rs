@@ -9,12 +9,13 @@ use rayon::prelude::*;
 
 use super::latest::{LatestReceiver, LatestSender, latest};
 use super::priority;
+use super::rendering::Rendering;
 use crate::cpu::camera::camera_getdir;
 use crate::cpu::trace::find_closest_object;
 use crate::gpu::device::Gpu;
 use crate::prepare::Prepared;
 use crate::probe::{self, AskGpu, Probe};
-use crate::scene::Scene;
+use crate::scene::{Places, Scene, lines_of, remarks};
 use crate::settings::Settings;
 
 /// What the window wants to know of a picture.
@@ -24,6 +25,8 @@ pub(super) struct Question {
     pub(super) number: u64,
     /// The scene that it shows.
     pub(super) scene: Arc<Scene>,
+    /// How it is rendered.
+    pub(super) rendering: Rendering,
     /// What to call it.
     pub(super) name: String,
     /// A pixel to be explained: column, and row from the bottom.
@@ -34,6 +37,8 @@ pub(super) struct Question {
     pub(super) clicked: bool,
     /// Whether to find out what all pixels show.
     pub(super) objects: bool,
+    /// Whether to say what may surprise: the text that the scene comes from, and where everything stands there.
+    pub(super) remarks: Option<(Arc<Vec<u8>>, Arc<Places>)>,
 }
 
 /// What it is told.
@@ -49,6 +54,12 @@ pub(super) enum Answer {
     Clicked {
         pixel: [u32; 2],
         object: Option<usize>,
+    },
+    /// What may surprise in the picture, by a text.
+    Remarks {
+        number: u64,
+        of: Arc<Vec<u8>>,
+        remarks: Vec<String>,
     },
     /// What all pixels show: numbers of objects from 1, 0 is nothing; rows from the top.
     Objects {
@@ -125,6 +136,8 @@ fn about(
     tell: &mut impl FnMut(Answer),
 ) -> Option<(u64, Question)> {
     let scene = Arc::clone(&question.scene);
+    let rendering = question.rendering;
+    let settings = &rendering.over(settings);
     let probe = Probe::new(&scene, settings, Ok(gpu));
     loop {
         if let (Some(pixel), true) = (question.pixel, question.clicked) {
@@ -147,6 +160,15 @@ fn about(
                 text: explain(&probe, &question.name, pixel, options),
             });
         }
+        if let Some((text, places)) = question.remarks.take() {
+            let lines = lines_of(&text, &places);
+            let remarks = remarks(&scene, settings.screen_tolerance, &lines);
+            tell(Answer::Remarks {
+                number: question.number,
+                of: Arc::clone(&text),
+                remarks,
+            });
+        }
         if question.objects
             && let Some(objects) = objects(&scene, settings, || receiver.is_old(number))
         {
@@ -157,7 +179,7 @@ fn about(
             });
         }
         (number, question) = receiver.take()?;
-        if !Arc::ptr_eq(&question.scene, &scene) {
+        if !Arc::ptr_eq(&question.scene, &scene) || question.rendering != rendering {
             return Some((number, question));
         }
     }

@@ -1,9 +1,17 @@
-//! The panel below the picture: a pixel explained, as `plumb probe` does it.
+//! The panel below the picture: a pixel explained, as `plumb probe` does it. What one wants to know comes first; the
+//! rest is folded.
+
+mod sections;
 
 use eframe::egui::{self, RichText, Ui};
 
+use sections::Sections;
+
 /// Height of the panel when it is opened first, in points.
 pub(super) const HEIGHT: f32 = 190.0;
+
+/// Width of the names of what is told, in points.
+const NAMES: f32 = 72.0;
 
 /// What the panel shows.
 #[derive(Debug, Default)]
@@ -23,15 +31,12 @@ pub(super) fn show(
     verdict: Option<&str>,
 ) -> bool {
     let mut let_go = false;
-    ui.horizontal(|ui| match (wanted, panel.held) {
+    ui.horizontal_wrapped(|ui| match (wanted, panel.held) {
         (None, _) => {
             ui.label("Move over the picture to have a pixel explained; click to hold it.");
         }
         (Some([x, y]), held) => {
             ui.label(RichText::new(format!("pixel ({x}, {y})")).strong());
-            if let Some(verdict) = verdict {
-                ui.label(format!("decided by {verdict}"));
-            }
             if held.is_some() {
                 let_go = ui.small_button("let go (Esc)").clicked();
             } else {
@@ -39,15 +44,13 @@ pub(super) fn show(
             }
         }
     });
-    egui::ScrollArea::both()
+    egui::ScrollArea::vertical()
         .auto_shrink([false, false])
         .show(ui, |ui| {
-            let text = panel.explained.as_ref();
-            let text = text.filter(|(_, pixel, _)| Some(*pixel) == wanted);
+            let explained = panel.explained.as_ref();
+            let text = explained.filter(|(_, pixel, _)| Some(*pixel) == wanted);
             match text {
-                Some((.., text)) => {
-                    ui.add(egui::Label::new(RichText::new(text).monospace()).extend());
-                }
+                Some((.., text)) => explained_pixel(ui, &Sections::of(text), verdict),
                 None if wanted.is_some() => {
                     ui.weak("…");
                 }
@@ -57,65 +60,47 @@ pub(super) fn show(
     let_go
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable as _;
-
-    struct Shown {
-        panel: Panel,
-        over: Option<[u32; 2]>,
-        let_go: bool,
+fn explained_pixel(ui: &mut Ui, sections: &Sections<'_>, verdict: Option<&str>) {
+    for (name, value) in &sections.first {
+        // In the picture it may have been the GPU that decided.
+        let picture = verdict.filter(|_| *name == "decided by");
+        let value = RichText::new(picture.unwrap_or(value)).monospace().strong();
+        ui.horizontal_top(|ui| {
+            let height = ui.text_style_height(&egui::TextStyle::Body);
+            ui.allocate_ui(egui::vec2(NAMES, height), |ui| {
+                ui.set_min_width(NAMES);
+                ui.label(*name);
+            });
+            ui.add(egui::Label::new(value).wrap());
+        });
     }
-
-    fn shown(panel: Panel, over: Option<[u32; 2]>) -> Harness<'static, Shown> {
-        let mut harness = Harness::new_ui_state(
-            |ui, shown: &mut Shown| {
-                let wanted = shown.panel.held.or(shown.over);
-                shown.let_go |= show(ui, &shown.panel, wanted, Some("the GPU, which is sure"));
-            },
-            Shown {
-                panel,
-                over,
-                let_go: false,
-            },
-        );
-        harness.run();
-        harness
+    for line in &sections.trouble {
+        ui.add(egui::Label::new(*line).wrap());
     }
-
-    // This text has every character that `plumb probe` prints; few fonts have all of them.
-    const TEXT: &str = "weight ∘ (ambient + diffuse) · 1 ± 2 × 3 … 640×480 ≤ ≥ √ — − ÷ ²";
-
-    #[test]
-    fn a_pixel_is_explained_once_that_is_known() {
-        let explained = Some((1, [3, 4], TEXT.to_owned()));
-        let panel = Panel {
-            held: None,
-            explained,
-        };
-        let mut harness = shown(panel, Some([3, 4]));
-        harness.get_by_label("pixel (3, 4)");
-        harness.get_by_label("decided by the GPU, which is sure");
-        harness.get_by_label(TEXT);
-        // The explanation at hand belongs to another pixel.
-        harness.state_mut().over = Some([5, 4]);
-        harness.run();
-        harness.get_by_label("pixel (5, 4)");
-        assert!(harness.query_by_label(TEXT).is_none());
-    }
-
-    #[test]
-    fn a_pixel_that_is_held_can_be_let_go() {
-        let panel = Panel {
-            held: Some([3, 4]),
-            explained: None,
-        };
-        let mut harness = shown(panel, Some([7, 7]));
-        harness.get_by_label("pixel (3, 4)");
-        harness.get_by_label("let go (Esc)").click();
-        harness.run();
-        assert!(harness.state().let_go);
-    }
+    let folded = |ui: &mut Ui, title: String, id: &str, lines: &[&str]| {
+        if lines.is_empty() {
+            return;
+        }
+        egui::CollapsingHeader::new(title)
+            .id_salt(id)
+            .show(ui, |ui| {
+                for line in lines {
+                    ui.add(egui::Label::new(RichText::new(*line).monospace()).wrap());
+                }
+            });
+    };
+    let count = sections.hits.len();
+    folded(ui, format!("Hits ({count})"), "hits", &sections.hits);
+    let title = format!("Misses ({})", sections.missed);
+    folded(ui, title, "misses", &sections.misses);
+    folded(ui, "Rays and lights".to_owned(), "rays", &sections.rays);
+    folded(
+        ui,
+        "The ray, and how sure".to_owned(),
+        "rest",
+        &sections.rest,
+    );
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,6 +31,10 @@ pub(super) enum Command {
     Undo,
     /// Does it again.
     Redo,
+    /// Another scene.
+    Open,
+    /// A new scene.
+    New,
     /// The changes into the file.
     SaveChanges,
     /// The picture into a file.
@@ -120,6 +124,8 @@ const BINDINGS: &[Binding] = &[
     with_shift(false, Key::Z, Command::Undo),
     with_shift(true, Key::Z, Command::Redo),
     with(Key::Y, Command::Redo),
+    with(Key::O, Command::Open),
+    with(Key::N, Command::New),
     with(Key::S, Command::SaveChanges),
     key(Key::P, Command::SavePicture),
     key(Key::F5, Command::Reload),
@@ -163,6 +169,7 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ),
     ("Ctrl+Z", "undo"),
     ("Ctrl+Shift+Z, Ctrl+Y", "redo"),
+    ("Ctrl+O, Ctrl+N", "open another scene, begin a new one"),
     ("Ctrl+S", "write what was changed into the scene file"),
     ("P", "save the picture, certified: .png, .ppm or .exr"),
     ("F5", "read the file and its textures again"),

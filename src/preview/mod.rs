@@ -12,16 +12,23 @@
 mod adaptive_resolution;
 mod app;
 mod canvases;
+mod chooser;
+mod display;
 mod handles;
+mod hints;
 mod inspect;
 mod inspector;
 mod keys;
 mod latest;
+mod legend;
 mod overlay;
+mod panels;
 mod picture;
 mod priority;
 mod progress;
 mod properties;
+mod recent;
+mod rendering;
 mod save;
 mod screen;
 mod selection;
@@ -29,6 +36,7 @@ mod session;
 mod shared_session;
 mod shell;
 mod side;
+mod start;
 mod status;
 mod undo;
 mod values;
@@ -53,8 +61,10 @@ use winit::event_loop::EventLoop;
 /// What to show.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The scene's file.
-    pub path: PathBuf,
+    /// The scene's file; without, the window says how to come to one.
+    pub path: Option<PathBuf>,
+    /// The file that keeps which scenes were opened last.
+    pub recent: Option<PathBuf>,
     /// Columns and rows of the picture, in place of the file's.
     pub size: Option<[u32; 2]>,
     /// Columns and rows that the window has room for at first.
@@ -112,7 +122,7 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
             .with_app_id("plumb")
             .with_title("plumb")
             .with_inner_size(window_size(&options))
-            .with_min_inner_size([480.0, 320.0]),
+            .with_min_inner_size([320.0, 240.0]),
         wgpu_options: egui_wgpu::WgpuConfiguration {
             wgpu_setup: setup.into(),
             on_surface_status: Arc::new(move |surface| {
@@ -132,9 +142,9 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     let no_display = |error: winit::error::EventLoopError| PreviewError::NoDisplay {
         reason: plain(&error.to_string()).to_owned(),
     };
-    let events = EventLoop::<eframe::UserEvent>::with_user_event()
-        .build()
-        .map_err(no_display)?;
+    let mut builder = EventLoop::<eframe::UserEvent>::with_user_event();
+    display::choose(&mut builder);
+    let events = builder.build().map_err(no_display)?;
     let started = Arc::new(Mutex::new(Err(String::from("no window was made"))));
     let start = Arc::clone(&started);
     let devices = Devices {

@@ -3,19 +3,28 @@
 use eframe::egui::{self, Align2, Context, RichText, Ui};
 
 use super::keys::HELP;
-use super::session::Trouble;
+use super::session::{Mistakes, Trouble};
 
 /// Shows what is wrong with the file, over the upper part of the picture, which stays.
 pub(super) fn trouble(ui: &mut Ui, area: egui::Rect, trouble: &Trouble, picture: bool) {
     let (title, text) = match trouble {
-        Trouble::Mistakes(text) => ("The file has a mistake", text.as_str()),
-        Trouble::Gone => ("The file is gone", "It is shown again once it is back."),
-        Trouble::Unreadable(why) => ("The file cannot be read", why.as_str()),
+        Trouble::Mistakes(Mistakes { count, text }) => {
+            let title = match count {
+                1 => "The file has a mistake".to_owned(),
+                count => format!("The file has {count} mistakes"),
+            };
+            (title, text.as_str())
+        }
+        Trouble::Gone => (
+            "The file is gone".to_owned(),
+            "It is shown again once it is back.",
+        ),
+        Trouble::Unreadable(why) => ("The file cannot be read".to_owned(), why.as_str()),
     };
     let title = if picture {
         format!("{title}: this is its last good picture")
     } else {
-        title.to_owned()
+        title
     };
     notice(ui, area, &title, text);
 }
@@ -77,19 +86,31 @@ pub(super) enum Leaving {
 }
 
 /// Asks what to do with so many changes; none as long as there is no answer.
-pub(super) fn leaving(context: &Context, changes: usize, name: &str) -> Option<Leaving> {
+///
+/// `opens`: it is another scene that is to be opened, and not the window that is to be closed.
+pub(super) fn leaving(
+    context: &Context,
+    changes: usize,
+    name: &str,
+    opens: bool,
+) -> Option<Leaving> {
     let mut chosen = None;
+    let (title, save, lose) = if opens {
+        ("Open another scene?", "Save and open", "Open without")
+    } else {
+        ("Close the window?", "Save and close", "Close without")
+    };
     // Nothing else can be done meanwhile.
     egui::Modal::new(egui::Id::unique("close")).show(context, |ui| {
-        ui.heading("Close the window?");
+        ui.heading(title);
         ui.label(match changes {
             1 => format!("A change is not in {name}."),
             changes => format!("{changes} changes are not in {name}."),
         });
         ui.horizontal(|ui| {
             for (text, choice) in [
-                ("Save and close", Leaving::Save),
-                ("Close without", Leaving::Lose),
+                (save, Leaving::Save),
+                (lose, Leaving::Lose),
                 ("Stay", Leaving::Stay),
             ] {
                 if ui.button(text).clicked() {
@@ -175,7 +196,10 @@ mod tests {
     fn trouble_shows_what_is_wrong() {
         for (trouble_of_file, words) in [
             (
-                Trouble::Mistakes("error: 3:1\n  ^".into()),
+                Trouble::Mistakes(Mistakes {
+                    count: 1,
+                    text: "error: 3:1\n  ^".into(),
+                }),
                 "error: 3:1\n  ^",
             ),
             (Trouble::Gone, "It is shown again once it is back."),
@@ -196,14 +220,17 @@ mod tests {
 
     #[test]
     fn what_becomes_of_changes_is_asked_for() {
-        for (button, answer) in [
-            ("Save and close", Leaving::Save),
-            ("Close without", Leaving::Lose),
-            ("Stay", Leaving::Stay),
+        for (button, answer, opens) in [
+            ("Save and close", Leaving::Save, false),
+            ("Close without", Leaving::Lose, false),
+            ("Stay", Leaving::Stay, false),
+            ("Save and open", Leaving::Save, true),
+            ("Open without", Leaving::Lose, true),
+            ("Stay", Leaving::Stay, true),
         ] {
             let mut harness = Harness::new_ui_state(
-                |ui, chosen: &mut Option<Leaving>| {
-                    *chosen = chosen.or(leaving(ui.ctx(), 3, "room.txt"));
+                move |ui, chosen: &mut Option<Leaving>| {
+                    *chosen = chosen.or(leaving(ui.ctx(), 3, "room.txt", opens));
                 },
                 None,
             );

@@ -1,4 +1,5 @@
-// Draws a picture from its buffer: each pixel of the window takes a word, and shows its bytes as they are.
+// Draws a picture from its buffer: each pixel of the window takes a word, and shows its bytes as they are; where the
+// picture is made smaller, the mean of those that it covers.
 
 struct ScreenUniforms {
     // Where the picture's top left corner is, in pixels of the window.
@@ -59,6 +60,40 @@ fn is_chosen(at: vec2i) -> bool {
     return (chosen[object / 32u] >> (object % 32u) & 1u) != 0u;
 }
 
+// The bytes of a pixel, or the colour of what decided it.
+fn shown(pixel: vec2u) -> vec3f {
+    let word = pixels[place(pixel, view.canvas)];
+    let bytes = vec3f(vec3u(word, word >> 8u, word >> 16u) & vec3u(255u));
+    if view.verdicts != 0u {
+        return verdict(word >> 24u, bytes);
+    }
+    return bytes;
+}
+
+// The mean over the area of the picture that a pixel of the window covers, where that is more than one of its pixels.
+// It is the mean of the bytes as they are: they are proportional to the light in the language, without gamma, and
+// several samples are averaged in them too, so a picture at 50 % looks like one of half the size with more samples.
+// Of more than TAPS pixels in a direction, evenly spread ones stand for the others.
+const TAPS: f32 = 8.0;
+fn mean(at: vec2i) -> vec3f {
+    let first = vec2f(at - view.origin) / view.zoom;
+    let last = min(first + 1.0 / view.zoom, vec2f(view.size));
+    let start = floor(first);
+    let stride = max(vec2f(1.0), ceil((ceil(last) - start) / TAPS));
+    var sum = vec3f(0.0);
+    var area = 0.0;
+    for (var y = start.y; y < last.y; y += stride.y) {
+        let height = min(last.y, y + stride.y) - max(first.y, y);
+        for (var x = start.x; x < last.x; x += stride.x) {
+            let weight = height * (min(last.x, x + stride.x) - max(first.x, x));
+            let pixel = min(vec2u(vec2f(x, y) + floor(0.5 * stride)), view.size - 1u);
+            sum += weight * shown(pixel);
+            area += weight;
+        }
+    }
+    return sum / area;
+}
+
 @fragment
 fn color(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = vec2i(position.xy);
@@ -66,10 +101,11 @@ fn color(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if any(pixel >= view.size) {
         discard;
     }
-    let word = pixels[place(pixel, view.canvas)];
-    var bytes = vec3f(vec3u(word, word >> 8u, word >> 16u) & vec3u(255u));
-    if view.verdicts != 0u {
-        bytes = verdict(word >> 24u, bytes);
+    var bytes: vec3f;
+    if view.zoom < 1.0 {
+        bytes = mean(at);
+    } else {
+        bytes = shown(pixel);
     }
     if view.marked.x > 0u {
         let inside = is_chosen(at);

@@ -2,6 +2,7 @@
 //!
 //! Takes what the watcher tells and what the user does; says what is to be rendered, and writes changes into the file.
 
+mod rendered;
 mod report;
 mod saving;
 mod version;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 pub(super) use saving::Saving;
 pub(super) use version::{News, Parsed, Version};
 
+use super::rendering::Rendering;
 use super::undo::{self, Direction, History, Step};
 use crate::edit::{Changes, Refused, Target, Value};
 use crate::scene::{self, EntityId, Object, Scene, Surface};
@@ -63,11 +65,20 @@ pub(super) fn shows(scene: &Scene, object: usize, entity: EntityId) -> bool {
     }
 }
 
+/// The mistakes of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Mistakes {
+    /// How many there are.
+    pub(super) count: usize,
+    /// They as they are printed.
+    pub(super) text: String,
+}
+
 /// Why what is shown is not what the file says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Trouble {
-    /// The file has mistakes: as they are printed.
-    Mistakes(String),
+    /// The file has mistakes.
+    Mistakes(Mistakes),
     /// The file is not there.
     Gone,
     /// The file cannot be read.
@@ -84,6 +95,8 @@ pub(super) struct Session {
     pub(super) path: PathBuf,
     /// Columns and rows of the picture, in place of the file's.
     size: Option<[u32; 2]>,
+    /// How the picture is rendered.
+    rendering: Rendering,
     /// The last version without mistakes, and its text.
     good: Option<(Parsed, Arc<Vec<u8>>)>,
     /// What changes are on top of: that version, or the one that it was made from by saving them.
@@ -110,6 +123,7 @@ impl Session {
         Self {
             path,
             size,
+            rendering: Rendering::default(),
             good: None,
             origin: None,
             changes: Changes::new(),

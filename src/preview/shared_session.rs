@@ -1,6 +1,7 @@
 //! The session and what was wished for of it, shared by the window and by who reads the file: a file that was written
 //! is rendered at once, and does not wait for the window's next frame.
 
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -42,10 +43,11 @@ impl SharedSession {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes news of the file. Whether something is rendered now; if not, there may be something to be said.
-    pub(super) fn news(&self, news: News) -> bool {
+    /// Takes news of a file, unless the session is about another one by now. Whether something is rendered now; if not,
+    /// there may be something to be said.
+    pub(super) fn news_of(&self, path: &Path, news: News) -> bool {
         let mut state = self.lock();
-        let changed = state.session.news(news);
+        let changed = state.session.path == path && state.session.news(news);
         if changed {
             state.wish();
         }
@@ -59,12 +61,16 @@ impl SharedSession {
     /// # Errors
     /// Why not.
     pub(super) fn save(&self, saving: Saving) -> Result<String, String> {
+        let path = saving.path().to_owned();
         let saved = saving.run(|text, changes| self.lock().session.expect(text, changes));
         let (version, told) = match saved {
             Ok((version, said)) => (Some(version), Ok(said)),
             Err(why) => (None, Err(why)),
         };
-        self.lock().change(|session| session.finish_saving(version));
+        self.lock().change(|session| {
+            // Another scene may have been opened meanwhile.
+            session.path == path && session.finish_saving(version)
+        });
         told
     }
 }
@@ -76,6 +82,7 @@ impl SessionState {
             self.wished = self.wishes.put(Wish {
                 scene: Arc::clone(scene),
                 changes: changes.clone(),
+                rendering: self.session.rendering(),
                 since: Instant::now(),
             });
         }
@@ -103,7 +110,7 @@ mod tests {
         let shared = SharedSession::new(Session::new("a.txt".into(), None), Arc::new(wishes));
         let tell = |text: &str| {
             let version = Version::read("a.txt".as_ref(), text.into());
-            shared.news(News::Version(version))
+            shared.news_of("a.txt".as_ref(), News::Version(version))
         };
         assert!(!tell("camera"));
         assert_eq!(shared.lock().wished, 0);
@@ -114,6 +121,10 @@ mod tests {
         let (number, wish) = receiver.take().unwrap();
         assert_eq!((number, wish.scene.camera.viewpoint.x), (2, 5.0));
         shared.lock().change(|session| session.discard(None));
+        assert_eq!(shared.lock().wished, 2);
+        // What is told of another file is not this one's.
+        let version = Version::read("b.txt".as_ref(), SCENE.into());
+        assert!(!shared.news_of("b.txt".as_ref(), News::Version(version)));
         assert_eq!(shared.lock().wished, 2);
     }
 }

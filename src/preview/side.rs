@@ -5,6 +5,7 @@
 use eframe::egui::{self, RichText, Ui};
 
 use super::properties;
+use super::rendering::Rendering;
 use super::selection::{Selection, made_of};
 use super::session::{Session, Source, title};
 use super::undo::Direction;
@@ -29,6 +30,8 @@ pub(super) enum Wanted {
     Reset(Target),
     /// The file's values again, all of them.
     Discard,
+    /// The picture rendered otherwise.
+    Render(Rendering),
     /// The changes written into the file.
     Save,
     /// The camera's block copied.
@@ -83,6 +86,8 @@ pub(super) fn show(ui: &mut Ui, side: &mut Side, session: &Session) -> Vec<Wante
             changes(ui, session, &mut wanted);
             ui.separator();
             lists(ui, side, scene);
+            // Below, so that the lists stay where they are when it is opened.
+            rendering(ui, session, scene, &mut wanted);
         });
     wanted
 }
@@ -113,6 +118,19 @@ fn view(ui: &mut Ui, session: &Session, scene: &Scene, wanted: &mut Vec<Wanted>)
             wanted.push(Wanted::SavePicture);
         }
     });
+}
+
+/// How the picture is rendered, which the file does not say.
+fn rendering(ui: &mut Ui, session: &Session, scene: &Scene, wanted: &mut Vec<Wanted>) {
+    egui::CollapsingHeader::new("rendering")
+        .id_salt("rendering")
+        .show(ui, |ui| {
+            let before = session.rendering();
+            let after = before.show(ui, scene.camera.worlddim.x);
+            if after != before {
+                wanted.push(Wanted::Render(after));
+            }
+        });
 }
 
 /// What was changed on top of the file, and what may become of it.
@@ -184,11 +202,11 @@ fn selected(
     if let Some(Source { line, text }) = session.source(entity) {
         ui.label(format!("{}, line {line}", session.name()));
         egui::Frame::group(ui.style()).show(ui, |ui| {
-            egui::ScrollArea::both()
+            egui::ScrollArea::vertical()
                 .id_salt("source")
-                .max_height(140.0)
+                .max_height(180.0)
                 .show(ui, |ui| {
-                    ui.add(egui::Label::new(RichText::new(text).monospace().small()).extend());
+                    ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
                 });
         });
     }

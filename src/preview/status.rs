@@ -73,6 +73,10 @@ pub(super) struct Line {
     pub(super) frames: Option<f64>,
     /// The pixel under the cursor, and its bytes.
     pub(super) pixel: Option<([u32; 2], [u8; 3])>,
+    /// The options that it is rendered with, if any.
+    pub(super) rendering: String,
+    /// Whether the file has not what is shown.
+    pub(super) trouble: bool,
     /// The last thing that was said.
     pub(super) said: Option<String>,
 }
@@ -84,13 +88,22 @@ pub(super) fn show(ui: &mut Ui, picture: Option<&PreviewPicture>, line: &Line) -
         match picture {
             Some(picture) => {
                 let certified = picture.precision == Precision::Certified;
-                let kind = RichText::new(kind(picture)).strong();
-                let color = if certified {
+                // What is certified of the picture is not so of the file.
+                let kind = if line.trouble {
+                    "the last good picture".to_owned()
+                } else {
+                    kind(picture)
+                };
+                let kind = RichText::new(kind).strong();
+                let color = if certified && !line.trouble {
                     ui.visuals().strong_text_color()
                 } else {
                     ui.visuals().warn_fg_color
                 };
                 ui.label(kind.color(color));
+                if !line.rendering.is_empty() {
+                    ui.label(&line.rendering);
+                }
                 let figures = ui.label(figures(picture));
                 let remarks = remarks(picture);
                 if !remarks.is_empty() {

@@ -66,7 +66,7 @@ impl Viewport {
                 let fitting = (area.size[0] / pixels[0]).min(area.size[1] / pixels[1]);
                 // Enlarged in whole steps, so that all pixels are equally large.
                 let zoom = if fitting < 1.0 {
-                    fitting.max(LEAST)
+                    fitting
                 } else {
                     fitting.floor().min(MOST)
                 };
@@ -75,15 +75,23 @@ impl Viewport {
             Self::At { zoom, middle } => (zoom, middle),
         };
         let screen = area.middle();
+        let origin = [0, 1].map(|i| screen[i] - zoom * middle[i]);
+        let origin = match self {
+            // What fits is in its area, down to the last pixel.
+            Self::Fit => [0, 1].map(|i| origin[i].floor().max(area.corner[i])),
+            Self::At { .. } => origin.map(f64::round),
+        };
         Placed {
-            origin: [0, 1].map(|i| (screen[i] - zoom * middle[i]).round() as i32),
+            origin: origin.map(|at| at as i32),
             zoom,
         }
     }
 
     /// Changes the zoom, so that what is at `at` (in pixels of the window) stays there.
     pub(super) fn zoom_to(&mut self, zoom: f64, at: [f64; 2], area: Area, size: [u32; 2]) {
-        let zoom = zoom.clamp(LEAST, MOST);
+        // A picture that fits may be smaller than the smallest step.
+        let least = LEAST.min(self.place(area, size).zoom);
+        let zoom = zoom.clamp(least, MOST);
         let kept = self.place(area, size).at(at);
         let screen = area.middle();
         let middle = [0, 1].map(|i| kept[i] + (screen[i] - at[i]) / zoom);
@@ -219,7 +227,38 @@ mod tests {
         assert_eq!(placed([1600, 480]).zoom, 0.5);
         assert_eq!(placed([1600, 480]).times(), 0);
         assert_eq!(placed([1, 1]).zoom, MOST);
-        assert_eq!(placed([1_000_000, 1]).zoom, LEAST);
+        assert_eq!(placed([1_000_000, 1]).zoom, 0.0008);
+    }
+
+    #[test]
+    fn what_fits_is_whole() {
+        for (width, height) in [(420.0, 300.0), (421.0, 301.0), (799.0, 600.0), (3.0, 900.0)] {
+            let area = Area {
+                corner: [10.0, 21.0],
+                size: [width, height],
+            };
+            for size in [[640, 480], [641, 479], [100, 100], [16384, 1], [7, 100_000]] {
+                let Placed { origin, zoom } = Viewport::Fit.place(area, size);
+                for i in 0..2 {
+                    let (first, last) = (f64::from(origin[i]), zoom * f64::from(size[i]));
+                    let end = area.corner[i] + area.size[i];
+                    assert!(
+                        first >= area.corner[i] && first + last <= end + 1e-9,
+                        "{size:?} {area:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn from_a_picture_below_the_smallest_step_steps_lead_up() {
+        let mut viewport = Viewport::Fit;
+        let size = [1_000_000, 1];
+        viewport.step(false, [400.0, 320.0], AREA, size);
+        assert_eq!(viewport, Viewport::Fit);
+        viewport.step(true, [400.0, 320.0], AREA, size);
+        assert_eq!(viewport.place(AREA, size).zoom, STEPS[0]);
     }
 
     #[test]

@@ -10,9 +10,11 @@
 //! decides.
 
 mod listen;
+mod scene;
 mod settle;
 #[cfg(test)]
 mod tests;
+mod textures;
 
 use std::fs;
 use std::io;
@@ -25,6 +27,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use crate::scene::{LoadError, read_file};
 use listen::Ears;
+pub(super) use scene::SceneWatch;
 use settle::Settle;
 
 /// Between looks without a sign: some file systems (those of a network) send none, and a folder may be replaced as a

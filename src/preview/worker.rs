@@ -14,6 +14,7 @@ use super::canvases::Canvases;
 use super::latest::{LatestReceiver, LatestSender, latest};
 use super::priority;
 use super::progress::Progress;
+use super::rendering::Rendering;
 use crate::edit::Changes;
 use crate::frame::DecidedBy;
 use crate::gpu::GpuError;
@@ -39,6 +40,8 @@ pub(super) struct Wish {
     pub(super) scene: Arc<Scene>,
     /// What is changed on top of it.
     pub(super) changes: Changes,
+    /// How it is rendered.
+    pub(super) rendering: Rendering,
     /// When it was wished for.
     pub(super) since: Instant,
 }
@@ -192,6 +195,7 @@ impl Work {
         } else {
             Arc::new(wish.changes.apply(&wish.scene))
         };
+        self.settings = wish.rendering.over(&self.settings);
         let most = MOST.min(self.canvases.most());
         let whole = scene.camera.pixeldim;
         let task = PreviewTask {

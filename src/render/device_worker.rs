@@ -107,11 +107,12 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 bag.leave(self.me);
                 format!("{why}, so the CPU renders")
             }
-            // Who asks for the GPU wants to know that the scene is too much for it.
+            // Who asks for the GPU wants to know that the scene is too much for it, or that the shader is no good.
             Gone::Fault(
                 error @ (GpuError::TooMany { .. }
                 | GpuError::TooLarge { .. }
-                | GpuError::TooManyBuffers { .. }),
+                | GpuError::TooManyBuffers { .. }
+                | GpuError::Refused { .. }),
             ) => {
                 if backend == Backend::Gpu || !bag.leave(self.me) {
                     return bag.fail(error.into());

@@ -45,8 +45,17 @@ pub enum LoadError {
 /// # Errors
 /// When the file cannot be read, is too large, or is not a scene without mistakes.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
+    load_with_text(path).map(|(scene, _)| scene)
+}
+
+/// The same with the text, in which [`places`](super::places()) tells where everything stands.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_text(path: &Path) -> Result<(Scene, Vec<u8>), LoadError> {
     let bytes = read_file(path)?;
-    Ok(parse(&path.to_string_lossy(), &bytes, folder_of(path))?)
+    let scene = parse(&path.to_string_lossy(), &bytes, folder_of(path))?;
+    Ok((scene, bytes))
 }
 
 /// The folder that the names of a scene's textures start at: that of its file, or the current one for a stream.
@@ -101,6 +110,18 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
 /// # Errors
 /// When the stream fails, is too long, or is not a scene without mistakes.
 pub fn load_from(name: &str, input: impl Read, folder: &Path) -> Result<Scene, LoadError> {
+    load_from_with_text(name, input, folder).map(|(scene, _)| scene)
+}
+
+/// The same with the text.
+///
+/// # Errors
+/// As [`load_from`].
+pub fn load_from_with_text(
+    name: &str,
+    input: impl Read,
+    folder: &Path,
+) -> Result<(Scene, Vec<u8>), LoadError> {
     let path = || PathBuf::from(name);
     let bytes = read(input, 0).map_err(|source| LoadError::Io {
         path: path(),
@@ -108,7 +129,8 @@ pub fn load_from(name: &str, input: impl Read, folder: &Path) -> Result<Scene, L
         hint: None,
     })?;
     let bytes = bytes.ok_or_else(|| LoadError::TooLarge { path: path() })?;
-    Ok(parse(name, &bytes, folder)?)
+    let scene = parse(name, &bytes, folder)?;
+    Ok((scene, bytes))
 }
 
 /// Reads everything, or nothing where there is more than a scene may have. Memory grows with what arrives.

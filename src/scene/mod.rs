@@ -46,12 +46,12 @@ pub use build::{BuildError, BuildErrors, MaterialId, SceneBuilder, TextureId};
 pub use listing::list_model;
 #[cfg(feature = "preview")]
 pub(crate) use load::read_file;
-pub use load::{LoadError, MAX_FILE, load, load_from};
+pub use load::{LoadError, MAX_FILE, load, load_from, load_from_with_text, load_with_text};
 pub use model::{
     Beam, Camera, Cone, Extent, Light, Material, Object, ProjectorPicture, Quadric, Rectangle,
     Scene, Shape, Surface, Texels, Texture, TextureMode, Triangle,
 };
 pub use parse::parse;
 pub use places::{EntityId, Given, Place, Places, line, places};
-pub use remarks::remarks;
+pub use remarks::{lines_of, remarks};
 pub use table::{MAX_PIXELDIM, PPLANE_SHADERS, PSPHERE_SHADERS};

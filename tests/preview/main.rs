@@ -16,6 +16,7 @@ mod follows;
 mod hands;
 mod harness;
 mod monkey;
+mod opening;
 mod program;
 mod shots;
 mod times;

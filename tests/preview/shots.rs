@@ -71,6 +71,62 @@ fn shots() {
     std::thread::sleep(Duration::from_millis(700));
     save(&program, "mistake.png");
     program.close();
+
+    small_window(&display);
+    start_page(&display);
+    hints(&display);
+}
+
+/// The same scene in a window of 420 by 300.
+fn small_window(display: &Display) {
+    let path = common::scenes().join("lit/mirror_and_glass.txt");
+    let mut program = open(display, &path, &[]);
+    program.window.resize(420, 300);
+    rest(&mut program);
+    save(&program, "small.png");
+    program.close();
+}
+
+fn start_page(display: &Display) {
+    let file = File::new("");
+    let state = file.beside("state/plumb");
+    fs::create_dir_all(&state).unwrap();
+    let scenes = ["/home/me/scenes/room.txt", "/home/me/scenes/tower/top.txt"];
+    fs::write(state.join("recent"), scenes.join("\n")).unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_plumb"));
+    command.arg("preview");
+    command.env("XDG_STATE_HOME", file.beside("state"));
+    let program = Program::start(display, command);
+    program.window.focus();
+    program.window.resize(700, 420);
+    std::thread::sleep(Duration::from_secs(3));
+    save(&program, "start.png");
+    program.window.key('o'.into(), &[keys::CONTROL]);
+    std::thread::sleep(Duration::from_millis(500));
+    program.window.key('a'.into(), &[keys::CONTROL]);
+    program
+        .window
+        .type_text(&format!("{}/", common::scenes().display()));
+    std::thread::sleep(Duration::from_secs(1));
+    save(&program, "open.png");
+    program.close();
+}
+
+fn hints(display: &Display) {
+    let file = File::new(
+        "camera cam { pixeldim 400 300  worlddim 8 6  viewpoint 4 3 6 }
+material wall { ambient 1 1 1  diffuse 4 4 4 }
+plane back { material wall  normal 0 0 1  point 0 0 -9 }
+sphere shade { material wall  center 4 3 -4  radius 2 }
+light lamp { location 4 4 -4  emissivity 3 3 3 }
+triangle lost { material wall  vertex1 1 9 -1  vertex2 2 9 -1  vertex3 2 10 -1 }
+",
+    );
+    let mut program = open(display, &file.path, &[]);
+    program.window.resize(900, 640);
+    rest(&mut program);
+    save(&program, "hints.png");
+    program.close();
 }
 
 #[test]

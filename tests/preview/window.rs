@@ -92,6 +92,8 @@ pub(crate) fn small(name: &str) -> (PathBuf, Scene) {
 pub(crate) fn command(scene: &Path, options: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_plumb"));
     command.arg("preview").arg(scene).args(options);
+    // What was opened last is none of the user's who runs the tests.
+    command.env("XDG_STATE_HOME", std::env::temp_dir().join("plumb-tests"));
     command.env("RUST_LOG", "error,plumb=warn,wgpu_core=warn");
     command
 }

@@ -28,6 +28,14 @@ impl App {
                     self.select(object.map(EntityId::Object));
                 }
             }
+            Answer::Remarks {
+                number,
+                of,
+                remarks,
+            } => {
+                self.hinted = Some((number, of));
+                self.hints.take(remarks);
+            }
             Answer::Objects {
                 number,
                 size,
@@ -56,7 +64,11 @@ impl App {
         let Some(picture) = &self.picture else {
             return;
         };
-        let explained = self.panel.held.or(self.over).filter(|_| self.panel_open);
+        let explained = self
+            .panel
+            .held
+            .or(self.over)
+            .filter(|_| self.panels.inspector());
         let pixel = self.clicked.or(explained);
         let seen = self
             .seen
@@ -66,15 +78,34 @@ impl App {
             (self.side.hovered.is_some() || self.side.selection.entity().is_some()) && !seen;
         let still = picture.precision == Precision::Certified;
         let clicked = self.clicked.is_some();
-        let question = (picture.number, pixel, [still, objects, clicked]);
-        if (pixel.is_none() && !objects) || self.asked == Some(question) {
+        let state = self.shared.lock();
+        let (session, is_newest) = (&state.session, state.wished == picture.number);
+        let hinted = |text: &Arc<Vec<u8>>| {
+            let hinted = self.hinted.as_ref();
+            hinted.is_some_and(|(number, of)| *number == picture.number && Arc::ptr_eq(of, text))
+        };
+        let text = session
+            .text()
+            .filter(|text| is_newest && session.trouble.is_none() && !hinted(text));
+        let places = session.good().map(|good| Arc::clone(&good.places));
+        let remarks = text.cloned().zip(places);
+        let (name, rendering) = (session.name(), session.rendering());
+        drop(state);
+        let question = (
+            picture.number,
+            pixel,
+            [still, objects, clicked, remarks.is_some()],
+        );
+        if (pixel.is_none() && !objects && remarks.is_none()) || self.asked == Some(question) {
             return;
         }
         self.asked = Some(question);
         self.inspector.ask(Question {
             number: picture.number,
             scene: Arc::clone(&picture.scene),
-            name: self.shared.lock().session.name(),
+            name,
+            rendering,
+            remarks,
             pixel,
             still,
             clicked,

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::{App, Event};
 use crate::edit::{Target, Value, camera_block};
+use crate::preview::chooser::Purpose;
 use crate::preview::keys::{self, Command};
 use crate::preview::overlay::SaveAs;
 use crate::preview::picture;
@@ -33,7 +34,7 @@ impl App {
         });
         self.presses += presses as u64;
         let mut commands = std::mem::take(&mut self.deferred);
-        if self.save_as.is_none() && !self.leaving.asks() {
+        if self.save_as.is_none() && self.chooser.is_none() && !self.leaving.asks() {
             self.deferred = keys::leaves_field(context);
             if self.deferred.is_empty() {
                 commands.extend(keys::pressed(context));
@@ -113,8 +114,8 @@ impl App {
                 viewport.step(larger, at, area, size);
             }),
             Command::Verdicts => self.showing.verdicts ^= true,
-            Command::Inspector => self.panel_open ^= true,
-            Command::Side => self.side_open ^= true,
+            Command::Inspector => self.panels.toggle_inspector(),
+            Command::Side => self.panels.toggle_side(),
             Command::Escape => {
                 self.panel.held = None;
                 self.help_open = false;
@@ -123,6 +124,8 @@ impl App {
             Command::CopyCamera => self.copy_camera(context),
             Command::Undo => self.step(Direction::Undo),
             Command::Redo => self.step(Direction::Redo),
+            Command::Open => self.choose(Purpose::Open),
+            Command::New => self.choose(Purpose::New),
             Command::SaveChanges => self.save_changes(),
             Command::SavePicture => self.ask_where(),
             Command::Reload => self.reload(),
@@ -135,7 +138,10 @@ impl App {
                 });
             }
             Command::Help => self.help_open ^= true,
-            Command::Quit => self.leaving.ask(),
+            Command::Quit => {
+                self.next = None;
+                self.leaving.ask();
+            }
         }
     }
 
@@ -165,7 +171,13 @@ impl App {
         if let Some((viewpoint, scene)) = self.viewpoint() {
             let mut camera = scene.camera.clone();
             camera.viewpoint = viewpoint;
-            context.copy_text(camera_block(&camera));
+            let options = self.shared.lock().session.rendering().options();
+            let mut block = camera_block(&camera);
+            if !options.is_empty() {
+                // What the file cannot say.
+                block = format!("# rendered with {options}\n{block}");
+            }
+            context.copy_text(block);
             self.say("the camera's block is in the clipboard");
         }
     }
@@ -186,7 +198,9 @@ impl App {
     }
 
     fn reload(&mut self) {
-        let path = self.options.path.clone();
+        let Some(path) = self.options.path.clone() else {
+            return;
+        };
         let (shared, teller) = (self.shared.clone(), self.teller.clone());
         self.on_thread("reload", move || {
             let news = match scene::read_file(&path) {
@@ -196,7 +210,7 @@ impl App {
                 }
                 Err(error) => session::News::Unreadable(error.to_string()),
             };
-            shared.news(news);
+            shared.news_of(&path, news);
             teller.tell(Event::Saved(Ok("read again".into())));
         });
     }
@@ -215,8 +229,8 @@ impl App {
             gpu: Arc::clone(&self.gpu),
             scene: Arc::clone(scene),
             changes: changes.clone(),
-            settings: self.options.settings.clone(),
-            file: self.options.path.clone(),
+            settings: state.session.rendering().over(&self.options.settings),
+            file: state.session.path.clone(),
             to: name.into(),
             software: self.options.software,
             stop: Arc::clone(&self.closing),
@@ -244,6 +258,10 @@ impl App {
             Wanted::Set(target, value) => self.set(target, value),
             Wanted::Reset(target) => self.discard(Some(target)),
             Wanted::Discard => self.discard(None),
+            Wanted::Render(rendering) => {
+                let mut state = self.shared.lock();
+                state.change(|session| session.render_as(rendering));
+            }
             Wanted::Save => self.save_changes(),
             Wanted::CopyCamera => self.copy_camera(context),
             Wanted::SavePicture => self.ask_where(),

@@ -1,4 +1,4 @@
-//! What is asked before the window closes: the same, whichever way it is to be closed.
+//! What is asked before the window closes, or turns to another scene: the same, whichever way that comes about.
 
 use eframe::egui::{self, Context};
 
@@ -49,6 +49,7 @@ impl App {
             && self.leaving != Leaving::Agreed
         {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.next = None;
             self.leaving.ask();
         }
         if self.leaving == Leaving::No {
@@ -67,7 +68,7 @@ impl App {
             }
             Leaving::Asking => {
                 let name = self.shared.lock().session.name();
-                match overlay::leaving(context, lost, &name) {
+                match overlay::leaving(context, lost, &name, self.next.is_some()) {
                     Some(overlay::Leaving::Save) => {
                         self.leaving = Leaving::Saving;
                         self.save_changes();
@@ -84,7 +85,13 @@ impl App {
             Leaving::Saving | Leaving::No | Leaving::Agreed => {}
         }
         if self.leaving == Leaving::Agreed {
-            context.send_viewport_cmd(egui::ViewportCommand::Close);
+            match self.next.take() {
+                Some(path) => {
+                    self.leaving = Leaving::No;
+                    self.turn_to(path);
+                }
+                None => context.send_viewport_cmd(egui::ViewportCommand::Close),
+            }
         }
     }
 }

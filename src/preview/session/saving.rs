@@ -1,7 +1,7 @@
 //! Changes on their way into the file.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Version;
@@ -22,6 +22,11 @@ pub(in crate::preview) struct Saving {
 }
 
 impl Saving {
+    /// The file.
+    pub(in crate::preview) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Writes the changes into the file, touching nothing else in it. A file that was changed meanwhile is not touched.
     /// `expect` is told what is going to be written. What the file is now, and what was done, in a sentence.
     ///

@@ -70,7 +70,7 @@ fn a_mistake_leaves_what_there_was() {
     let (_folder, mut session) = session(SCENE);
     let good = shown(&session);
     assert!(!tell(&mut session, &SCENE.replace("radius", "radios")));
-    let Some(Trouble::Mistakes(text)) = &session.trouble else {
+    let Some(Trouble::Mistakes(Mistakes { text, .. })) = &session.trouble else {
         panic!("{:?}", session.trouble);
     };
     assert!(

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::Mistakes;
 use crate::preview::watch;
 use crate::scene::{self, Places, Scene};
 
@@ -12,7 +13,7 @@ pub(in crate::preview) struct Version {
     /// Its text.
     pub(in crate::preview) text: Vec<u8>,
     /// The scene, or its mistakes as they are printed.
-    pub(in crate::preview) parsed: Result<Parsed, String>,
+    pub(in crate::preview) parsed: Result<Parsed, Mistakes>,
 }
 
 /// A version of the file without mistakes.
@@ -33,7 +34,10 @@ impl Version {
                 scene: Arc::new(scene),
                 places: Arc::new(scene::places(&text)),
             })
-            .map_err(|mistakes| mistakes.render(false));
+            .map_err(|mistakes| Mistakes {
+                count: mistakes.total(),
+                text: mistakes.render(false),
+            });
         Self { text, parsed }
     }
 }
