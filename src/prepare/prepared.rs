@@ -142,9 +142,10 @@ impl<R: Real> Prepared<R> {
     fn of(scene: &Scene, view: ViewParameters, with_spheres: bool, hidden: &[bool]) -> Self {
         let camera = Camera::new(&scene.camera);
         let mut planes = Vec::new();
+        // One after the other: an exact number belongs to the thread that made it.
         let surfaces = scene
             .objects
-            .par_iter()
+            .iter()
             .map(|object| Surface::new(scene, object));
         // Many spheres are made with their tiles, or later.
         let few = with_spheres && scene.objects.len() < screen_grid::WORTHWHILE;
