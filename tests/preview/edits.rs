@@ -150,7 +150,8 @@ fn a_handle_is_dragged_in_one_step_and_undone_to_the_byte() {
 fn every_way_to_close_asks_before_changes_are_lost() {
     let display = Display::start(1400, 900);
     let file = File::new(ROOM);
-    let ways: [(&str, fn(&Program<'_>)); 3] = [
+    type Way = fn(&Program<'_>);
+    let ways: [(&str, Way); 3] = [
         ("Ctrl+Q", |program| {
             program.window.key('q'.into(), &[keys::CONTROL])
         }),

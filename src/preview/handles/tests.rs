@@ -151,7 +151,7 @@ fn the_nearest_handle_within_reach_is_hit() {
     assert_eq!(hit(&handles, [x + 9.0, y], 1.0), Some(handles[1]));
     assert_eq!(hit(&handles, [x + 9.0, y], 2.0), None);
     assert_eq!(hit(&handles, [x + 11.0, y], 1.0), None);
-    assert_eq!(hit(&handles, [x + 100.0, y], 0.1).is_some(), true);
+    assert!(hit(&handles, [x + 100.0, y], 0.1).is_some());
 }
 
 #[test]

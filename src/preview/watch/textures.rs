@@ -15,10 +15,13 @@ use crate::scene::{EntityId, Places, places};
 /// written.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// A file, and what was found there when it was about to be read.
+type Seen = (PathBuf, Option<Stamp>);
+
 /// Tells when one of the textures was written, until it is dropped.
 #[derive(Debug, Clone)]
 pub(super) struct TextureWatch {
-    files: Sender<Vec<PathBuf>>,
+    files: Sender<Vec<Seen>>,
 }
 
 impl TextureWatch {
@@ -27,7 +30,7 @@ impl TextureWatch {
     /// # Errors
     /// When there can be no thread.
     pub(super) fn new(mut tell: impl FnMut() + Send + 'static) -> std::io::Result<Self> {
-        let (files, receiver) = mpsc::channel::<Vec<PathBuf>>();
+        let (files, receiver) = mpsc::channel::<Vec<Seen>>();
         thread::Builder::new()
             .name("textures".into())
             .spawn(move || {
@@ -41,7 +44,7 @@ impl TextureWatch {
                     match next {
                         Ok(files) => looks.turn_to(files),
                         Err(RecvTimeoutError::Timeout) => {
-                            if looks.look(|path| Stamp::of(path)) {
+                            if looks.look(Stamp::of) {
                                 tell();
                             }
                         }
@@ -52,10 +55,11 @@ impl TextureWatch {
         Ok(Self { files })
     }
 
-    /// Watches these, and no others.
+    /// Watches these, and no others. They are looked at now, and not when the thread comes to it: whoever reads them
+    /// after this misses nothing that is written later.
     pub(super) fn turn_to(&self, files: Vec<PathBuf>) {
         // The thread ends only with this.
-        let _ = self.files.send(files);
+        let _ = self.files.send(seen(files));
     }
 }
 
@@ -80,6 +84,14 @@ pub(super) fn textures(text: &[u8], folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+fn seen(files: Vec<PathBuf>) -> Vec<Seen> {
+    let stamped = |path: PathBuf| {
+        let stamp = Stamp::of(&path);
+        (path, stamp)
+    };
+    files.into_iter().map(stamped).collect()
+}
+
 /// What was found at each look.
 #[derive(Debug, Default)]
 struct Looks {
@@ -98,18 +110,15 @@ struct File {
 impl Looks {
     /// From now on these. Those that were watched before go on from what is known of them: one that was written between
     /// being read and being watched would be missed otherwise.
-    fn turn_to(&mut self, paths: Vec<PathBuf>) {
+    fn turn_to(&mut self, files: Vec<Seen>) {
         let mut old = std::mem::take(&mut self.files);
-        for path in paths {
+        for (path, found) in files {
             let before = old.iter().position(|file| file.path == path);
             let file = before.map(|index| old.swap_remove(index));
-            self.files.push(file.unwrap_or_else(|| {
-                let found = Stamp::of(&path);
-                File {
-                    path,
-                    known: found.clone(),
-                    found,
-                }
+            self.files.push(file.unwrap_or_else(|| File {
+                path,
+                known: found.clone(),
+                found,
             }));
         }
     }
@@ -149,13 +158,27 @@ mod tests {
         assert!(textures(b"camera c {", Path::new("")).is_empty());
     }
 
+    /// What is written after a file was looked at is news, however late the list comes to the thread.
+    #[test]
+    fn what_is_written_before_it_is_watched_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ppm");
+        let files = seen(vec![path.clone()]);
+        fs::write(&path, [0; 9]).unwrap();
+        let mut looks = Looks::default();
+        looks.turn_to(files);
+        let look = |looks: &mut Looks| looks.look(Stamp::of);
+        assert!(!look(&mut looks));
+        assert!(look(&mut looks) && !look(&mut looks));
+    }
+
     #[test]
     fn what_stays_written_counts_once() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ppm");
         let mut looks = Looks::default();
-        let look = |looks: &mut Looks| looks.look(|path| Stamp::of(path));
-        looks.turn_to(vec![path.clone()]);
+        let look = |looks: &mut Looks| looks.look(Stamp::of);
+        looks.turn_to(seen(vec![path.clone()]));
         assert!(!look(&mut looks) && !look(&mut looks));
         // It appears, and while it grows it does not count.
         for length in 1..4 {
@@ -167,7 +190,7 @@ mod tests {
         // The same list again forgets nothing.
         fs::write(&path, [0; 9]).unwrap();
         assert!(!look(&mut looks));
-        looks.turn_to(vec![path.clone()]);
+        looks.turn_to(seen(vec![path.clone()]));
         assert!(look(&mut looks));
         // It goes.
         fs::remove_file(&path).unwrap();
