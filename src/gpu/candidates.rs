@@ -4,6 +4,7 @@ use std::fs;
 
 use super::GpuError;
 use super::adapters::{choose, enumerate, instance, problem, wanted_by_variable};
+use super::device::is_software;
 
 /// Adapters that a picture may be made on together.
 #[derive(Debug)]
@@ -41,10 +42,6 @@ pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, Gp
         return Ok(Candidates::Software(first.get_info().name));
     }
     Ok(Candidates::Adapters(vec![first.clone()]))
-}
-
-pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
-    info.device_type == wgpu::DeviceType::Cpu
 }
 
 /// Whether there may be an adapter that is no software, as far as can be told without loading a driver: on Linux GPUs

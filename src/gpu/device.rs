@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
 use super::bands::buffers::BufferPool;
-use super::candidates::is_software;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
@@ -261,6 +260,11 @@ pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
     format!("{} {}", info.driver, info.driver_info)
         .trim()
         .to_owned()
+}
+
+/// Whether the adapter is a program on the CPU.
+pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    info.device_type == wgpu::DeviceType::Cpu
 }
 
 /// All that tells an adapter from others, in a line.

@@ -3,7 +3,7 @@
 //!
 //! Stands between the tracers (`gpu`, `cpu`) and what takes the rows (`image`, the preview, a test). [`devices`] opens
 //! adapters, `device_worker` and `device_thread` keep one busy, `cpu_worker` does the same with the CPU's cores, and
-//! [`rendering`] brings them together.
+//! `run` brings them together.
 
 mod bag;
 mod cpu_worker;
@@ -14,6 +14,7 @@ mod devices;
 mod finish;
 mod rendering;
 mod report;
+mod run;
 #[cfg(test)]
 mod tests;
 
@@ -31,7 +32,8 @@ use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
 use crate::scene::Scene;
 use crate::stopwatch::{Phase, Stopwatch};
-use rendering::{Rendering, Source};
+use rendering::Rendering;
+use run::Source;
 
 use crate::frame::Halt;
 pub use crate::frame::{Band, Emit, PixelFault, StopRequested};

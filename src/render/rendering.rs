@@ -1,32 +1,17 @@
-//! A picture under way: who works on it, and how that ends.
-//!
-//! The CPU begins at once; devices join when they are open and have compiled the shader. Finished bands go out on the
-//! thread that asked for the picture. When the last one has gone out nobody is waited for but who has borrowed
-//! something, and those stop at once.
+//! What all workers of a rendering know: the scene, prepared once for all of them, the bag, and what is to be told.
 
 use std::ops::Range;
-use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use std::thread;
 
-use super::bag::{Bag, Kind, Role};
-use super::cpu_worker;
-use super::crew::{Crew, Over};
-use super::device_thread::News;
-use super::device_worker::Here;
-use super::devices::{Devices, Found, Wanted};
-use super::report::WorkerReport;
-use super::{Backend, Emit, Error, Live, Precision, Settings};
+use super::Settings;
+use super::bag::Bag;
+use super::report::Told;
 use crate::certify::lanes::Lanes;
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
-use crate::gpu::GpuError;
-use crate::gpu::candidates::{is_named, may_be_hardware};
 use crate::jitter::Jitter;
-use crate::render::install_hint;
 use crate::scene::Scene;
 use crate::shader::pack::Packed;
-use crate::stopwatch::{Phase, Stopwatch};
 
 /// Everything that workers need to know.
 pub(super) struct Rendering<'a> {
@@ -46,26 +31,6 @@ pub(super) struct Rendering<'a> {
     pub(super) bag: Bag,
     /// What is said of workers that left, or never came.
     pub(super) told: Mutex<Told>,
-}
-
-/// What is said of workers that left, or never came.
-#[derive(Debug, Default)]
-pub(super) struct Told {
-    /// By their numbers.
-    pub(super) workers: Vec<(usize, WorkerReport)>,
-    pub(super) left: Vec<String>,
-    pub(super) revoked: Option<String>,
-    /// The name of an adapter that is software and was left out.
-    pub(super) left_out: Option<String>,
-}
-
-/// Where devices come from.
-#[derive(Clone, Copy)]
-pub(super) enum Source<'a> {
-    /// They are opened where they are not open yet.
-    Devices(&'a Devices),
-    /// There is this one.
-    Live(&'a Live<'a>),
 }
 
 impl<'a> Rendering<'a> {
@@ -147,156 +112,5 @@ impl<'a> Rendering<'a> {
 
     pub(super) fn tell(&self, how: impl FnOnce(&mut Told)) {
         how(&mut self.told.lock().unwrap_or_else(PoisonError::into_inner));
-    }
-
-    /// Whether devices are wanted, and why not if one might expect them to be.
-    fn wants_devices(&self) -> Result<bool, Error> {
-        let settings = self.settings;
-        if settings.backend == Backend::Cpu {
-            return Ok(false);
-        }
-        if settings.precision == Precision::Fast || settings.has_gpu_bounds() {
-            return Ok(true);
-        }
-        if settings.backend == Backend::Gpu {
-            return Err(Error::Values);
-        }
-        let why = "certified values are computed on the CPU, all of them; --precision fast takes the GPU's own f32";
-        self.tell(|told| told.left.push(why.into()));
-        Ok(false)
-    }
-
-    /// Renders. Returns what came of it.
-    pub(super) fn run<'s>(
-        &'s self,
-        source: Source<'s>,
-        emit: &mut Emit<'_>,
-        watch: &mut Stopwatch,
-    ) -> Result<Told, Error> {
-        let (sender, news) = channel();
-        let wants_devices = self.wants_devices()?;
-        let certified = self.settings.precision == Precision::Certified;
-        // Where a device was named, where it alone may make the bytes, or where the CPU is not wanted, it is waited for.
-        let waits = self.settings.backend == Backend::Gpu
-            || is_named(self.settings.adapter.as_deref())
-            || !certified;
-        let mut asked = false;
-        if let (true, Source::Devices(devices)) = (wants_devices, source)
-            && (waits || devices.are_given() || may_be_hardware())
-        {
-            devices.ask(Wanted::new(self.settings, waits), sender.clone());
-            asked = true;
-        }
-        self.on_threads(|| self.decider.exact_tracer());
-        watch.lap(Phase::Prepare);
-        let found = match source {
-            _ if !wants_devices => Vec::new(),
-            Source::Live(live) => vec![Here::Live(live)],
-            Source::Devices(devices) if waits => self.found(devices, &news)?,
-            Source::Devices(_) => Vec::new(),
-        };
-        watch.lap(Phase::Devices);
-        let cpu = match (&found[..], certified) {
-            ([], _) => Some(Role::Works),
-            (_, false) => None,
-            // A device that was named is helped by the CPU, unless it is the CPU.
-            ([Here::Opened { device, .. }], true)
-                if self.settings.backend == Backend::Auto && !device.gpu.software =>
-            {
-                Some(Role::Works)
-            }
-            (_, true) => Some(Role::StandsBy),
-        };
-        let over = Mutex::new(vec![sender.clone()]);
-        let late = found.is_empty() && wants_devices && !waits;
-        let ended = thread::scope(|scope| {
-            let crew = Crew::new(self, scope, &over);
-            // Whatever comes of it, all hear that it is over.
-            let _over = Over::of(&self.bag, &over);
-            // First those that others stand by for.
-            for here in found {
-                crew.device(here, Role::Works);
-            }
-            if let Some(role) = cpu {
-                let worker = self.bag.join(Kind::Cpu, role);
-                crew.spawn("cpu", move || cpu_worker::run(self, worker));
-            }
-            if let (true, Source::Devices(devices)) = (late, source) {
-                crew.spawn("devices", move || crew.late(devices, asked, &news, &sender));
-            }
-            watch.lap(Phase::Threads);
-            self.bag.emit(emit, watch)
-        });
-        watch.lap(Phase::Drain);
-        ended?;
-        // A device may be found to be wrong by a band that another one brought, when the last one has gone out.
-        if let Some(error) = self.bag.doubt() {
-            return Err(error);
-        }
-        let mut told =
-            std::mem::take(&mut *self.told.lock().unwrap_or_else(PoisonError::into_inner));
-        // Only now is it known which bands went out.
-        for (number, worker) in &mut told.workers {
-            worker.did(self.bag.activity(*number));
-        }
-        told.workers
-            .retain(|(_, worker)| worker.is_device() || worker.bands > 0);
-        Ok(told)
-    }
-
-    /// The devices that were waited for; none where the CPU will do.
-    fn found<'s>(
-        &self,
-        devices: &'s Devices,
-        news: &Receiver<News>,
-    ) -> Result<Vec<Here<'s>>, Error> {
-        let found = match news.recv() {
-            Ok(News::Found(found)) => found,
-            _ => Found::None(GpuError::NoAdapter),
-        };
-        let any_tracer = self.settings.backend == Backend::Auto;
-        match found {
-            Found::Devices(found, phases) => {
-                let (mut here, mut not_here) = (Vec::new(), Vec::new());
-                for device in found {
-                    match device {
-                        Ok(device) => here.push(Here::Opened {
-                            device,
-                            phases,
-                            devices,
-                        }),
-                        Err(error) => not_here.push(error),
-                    }
-                }
-                // Who asks for the GPU, and has several, may do with one of them.
-                let others = !here.is_empty();
-                for error in not_here {
-                    if !any_tracer && !others {
-                        return Err(error.into());
-                    }
-                    let who = if others {
-                        "others render"
-                    } else {
-                        "the CPU renders"
-                    };
-                    self.tell(|told| told.left.push(format!("{error}; {who}")));
-                }
-                if self.settings.precision == Precision::Fast {
-                    here.truncate(1);
-                }
-                Ok(here)
-            }
-            // Without any GPU the CPU gives the same picture; a GPU that was named has to be there.
-            Found::None(error @ GpuError::NoAdapter) if any_tracer => {
-                let hint = install_hint();
-                self.tell(|told| {
-                    told.left
-                        .push(format!("{error}, so the CPU renders; {hint}"))
-                });
-                Ok(Vec::new())
-            }
-            Found::None(error) => Err(error.into()),
-            Found::Software(_) => Ok(Vec::new()),
-        }
     }
 }

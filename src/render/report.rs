@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::bag::Activity;
-use super::rendering::Told;
 use super::{Backend, Precision, SamplePattern, Settings};
 use crate::certify::{CpuSeconds, DecidedBy, Tally};
 use crate::scene::Scene;
@@ -67,6 +66,17 @@ pub struct Report {
     pub bands: u32,
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+/// What is said of workers that left, or never came.
+#[derive(Debug, Default)]
+pub(super) struct Told {
+    /// By their numbers.
+    pub(super) workers: Vec<(usize, WorkerReport)>,
+    pub(super) left: Vec<String>,
+    pub(super) revoked: Option<String>,
+    /// The name of an adapter that is software and was left out.
+    pub(super) left_out: Option<String>,
 }
 
 /// What a worker did for a picture.

@@ -4,8 +4,6 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::gpu::device::Gpu;
-
 /// The buffers of a dispatch.
 #[derive(Debug, Clone)]
 pub(super) struct PixelBuffers {
@@ -24,14 +22,14 @@ const KEPT: usize = 4;
 
 impl BufferPool {
     /// A pair of at least so many bytes each.
-    pub(super) fn take(&self, gpu: &Gpu, bytes: u64) -> PixelBuffers {
+    pub(super) fn take(&self, device: &wgpu::Device, bytes: u64) -> PixelBuffers {
         let mut spare = self.lock();
         let fitting = spare.iter().enumerate();
         let fitting = fitting.filter(|(_, pair)| pair.pixels.size() >= bytes);
         let smallest = fitting.min_by_key(|(_, pair)| pair.pixels.size());
         let Some((place, _)) = smallest else {
             drop(spare);
-            return PixelBuffers::new(gpu, bytes);
+            return PixelBuffers::new(device, bytes);
         };
         spare.swap_remove(place)
     }
@@ -46,17 +44,24 @@ impl BufferPool {
         }
     }
 
-    /// Sees to it that there are so many pairs of at least so many bytes, and that the system has given the memory.
-    pub(super) fn prepare(&self, gpu: &Gpu, pairs: usize, bytes: u64) {
+    /// Sees to it that there are so many pairs of at least so many bytes, and that the system has given the memory:
+    /// `submit` hands the device what touches it.
+    pub(super) fn prepare(
+        &self,
+        device: &wgpu::Device,
+        submit: impl Fn(wgpu::CommandEncoder),
+        pairs: usize,
+        bytes: u64,
+    ) {
         let large = |pair: &&PixelBuffers| pair.pixels.size() >= bytes;
         let missing = pairs.saturating_sub(self.lock().iter().filter(large).count());
         for _ in 0..missing {
-            let pair = PixelBuffers::new(gpu, bytes);
+            let pair = PixelBuffers::new(device, bytes);
             let descriptor = wgpu::CommandEncoderDescriptor::default();
-            let mut encoder = gpu.device.create_command_encoder(&descriptor);
+            let mut encoder = device.create_command_encoder(&descriptor);
             encoder.clear_buffer(&pair.pixels, 0, None);
             encoder.clear_buffer(&pair.staging, 0, None);
-            gpu.submit(encoder);
+            submit(encoder);
             self.give(pair);
         }
     }
@@ -67,9 +72,9 @@ impl BufferPool {
 }
 
 impl PixelBuffers {
-    fn new(gpu: &Gpu, bytes: u64) -> Self {
+    fn new(device: &wgpu::Device, bytes: u64) -> Self {
         let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size: bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
                 usage: usage | wgpu::BufferUsages::COPY_DST,
@@ -94,11 +99,19 @@ mod tests {
     fn buffers_are_used_again() {
         let gpu = adapters::open(None).unwrap();
         let pool = BufferPool::default();
-        pool.prepare(&gpu, 2, 1000);
-        pool.prepare(&gpu, 2, 900);
+        let prepare = |pairs, bytes| {
+            pool.prepare(
+                &gpu.device,
+                |encoder| drop(gpu.submit(encoder)),
+                pairs,
+                bytes,
+            );
+        };
+        prepare(2, 1000);
+        prepare(2, 900);
         assert_eq!(pool.lock().len(), 2, "those that are there will do");
-        let small = pool.take(&gpu, 500);
-        let large = pool.take(&gpu, 2000);
+        let small = pool.take(&gpu.device, 500);
+        let large = pool.take(&gpu.device, 2000);
         assert_eq!((small.pixels.size(), large.staging.size()), (1000, 2000));
         pool.give(small);
         (0..KEPT).for_each(|_| pool.give(large.clone()));

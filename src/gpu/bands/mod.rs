@@ -177,8 +177,12 @@ pub fn prepare(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) {
     let (largest, filled) = largest_dispatch(gpu, form, width, rows);
     let pixels = u64::from(width) * u64::from(rows.end - rows.start);
     let pairs = if largest < pixels { 2 } else { 1 };
-    gpu.buffers
-        .prepare(gpu, pairs, Layout::new(form, filled).bytes);
+    gpu.buffers.prepare(
+        &gpu.device,
+        |encoder| drop(gpu.submit(encoder)),
+        pairs,
+        Layout::new(form, filled).bytes,
+    );
 }
 
 /// Most pixels that one dispatch may have here; and the same with those that its rows are filled up with.

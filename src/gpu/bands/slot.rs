@@ -51,7 +51,7 @@ impl Slot {
         let form = &pipeline.form;
         let buffers = gpu
             .buffers
-            .take(gpu, partial::Layout::new(form, largest).bytes);
+            .take(&gpu.device, partial::Layout::new(form, largest).bytes);
         let dispatch = buffer(
             "dispatch",
             (size_of::<Dispatch>() + size_of::<CameraNumbers>()) as u64,
