@@ -71,7 +71,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
 #[test]
 fn a_monkey_loses_nothing() {
     let seed = number("PLUMB_MONKEY_SEED", 1);
-    let seconds = number("PLUMB_MONKEY_SECONDS", 24);
+    let seconds = number("PLUMB_MONKEY_SECONDS", 15);
     let stage = std::fs::read_to_string(common::scenes().join("lit/spotlight_stage.txt")).unwrap();
     let scenes = [
         ("room", ROOM, &[][..]),
