@@ -179,7 +179,9 @@ pub fn prepare(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) {
     let pairs = if largest < pixels { 2 } else { 1 };
     gpu.buffers.prepare(
         &gpu.device,
-        |encoder| drop(gpu.submit(encoder)),
+        |encoder| {
+            gpu.submit(encoder);
+        },
         pairs,
         Layout::new(form, filled).bytes,
     );
