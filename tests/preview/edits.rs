@@ -81,6 +81,15 @@ fn drag_edge(program: &mut Program<'_>, (x, y): (u32, u32), from: i32, by: i32) 
     });
 }
 
+/// The window on the room, whose ball was selected and made smaller by its edge; and where the picture stands.
+fn with_a_smaller_ball<'d>(display: &'d Display, file: &File) -> (Program<'d>, (u32, u32)) {
+    let mut program = open(display, &file.path, &[]);
+    let place = wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
+    select_ball(&mut program, place);
+    drag_edge(&mut program, place, 0, -20);
+    (program, place)
+}
+
 /// The radius of the ball in a text.
 fn radius(text: &str) -> f64 {
     let radius = text.split("radius ").nth(1).unwrap();
@@ -105,10 +114,7 @@ fn redo(program: &Program<'_>) {
 fn a_handle_is_dragged_in_one_step_and_undone_to_the_byte() {
     let display = Display::start(1400, 900);
     let file = File::new(ROOM);
-    let mut program = open(&display, &file.path, &[]);
-    let place = wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
-    select_ball(&mut program, place);
-    drag_edge(&mut program, place, 0, -20);
+    let (mut program, place) = with_a_smaller_ball(&display, &file);
     assert_eq!(file.read(), ROOM);
     save(&program);
     let small = program.wait("the saved radius", |_| {
@@ -206,10 +212,7 @@ fn every_way_to_close_asks_before_changes_are_lost() {
 fn what_somebody_else_writes_is_not_written_over() {
     let display = Display::start(1400, 900);
     let file = File::new(ROOM);
-    let mut program = open(&display, &file.path, &[]);
-    let place = wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
-    select_ball(&mut program, place);
-    drag_edge(&mut program, place, 0, -20);
+    let (mut program, place) = with_a_smaller_ball(&display, &file);
     // The window is held up while somebody saves, and Ctrl+S is struck: it hears of both at once.
     let signal = |signal: &str, program: &Program<'_>| {
         let number = program.number().to_string();
