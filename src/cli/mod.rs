@@ -13,7 +13,9 @@ mod doctor;
 mod dump;
 mod end;
 mod inherited;
+mod join;
 mod outputs;
+mod parts;
 mod picture;
 mod preview;
 mod probe;
@@ -129,6 +131,8 @@ struct Cli {
 enum Command {
     /// Render a scene into a picture: PPM, PNG or EXR
     Render(render::Args),
+    /// Make a picture of its parts, which `plumb render --part` has made; exit 1 if some are missing
+    Join(join::Args),
     /// Tell every error of scene files, without touching a GPU
     Check(check::Args),
     /// Print what a scene becomes on its way to the GPU
@@ -178,6 +182,7 @@ fn run() -> u8 {
     let ended = match cli.command {
         None => render::filter(&cli.filter),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Join(args)) => join::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Dump(args)) => dump::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),

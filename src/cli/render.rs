@@ -21,6 +21,7 @@ use serde::Serialize;
 
 use super::args::RenderOptions;
 use super::outputs::Outputs;
+use super::parts::{self, PartOptions};
 use super::picture::{self, PictureFile};
 use super::progress::Progress;
 use super::summary::{answer, summary, told};
@@ -38,24 +39,31 @@ EXAMPLES
   plumb render scene.txt --verdicts why.png --strict
                                          what decided each pixel; exit 1 if any
                                          byte is not proven
-  plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt")]
+  plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt
+  plumb render scene.txt -o big.png --size 100000x100000 --resume
+                                         goes on where it was stopped
+  plumb render scene.txt -o big.png --size 100000x100000 --part 3/64
+                                         one part, anywhere; `plumb join big.png`
+                                         makes the picture of all (docs/CLUSTER.md)")]
 pub(crate) struct Args {
     /// The scene file; `-` is stdin
     scene: PathBuf,
     #[command(flatten)]
     options: RenderOptions,
+    #[command(flatten)]
+    parts: PartOptions,
 }
 
 /// What is rendered, and under which name.
-struct RenderCommand<'a> {
+pub(super) struct RenderCommand<'a> {
     /// What errors and reports call the scene.
-    name: &'a str,
+    pub(super) name: &'a str,
     /// The scene's file, if it has one.
     file: Option<&'a Path>,
-    scene: Scene,
+    pub(super) scene: Scene,
     /// What may surprise in its picture.
-    remarks: Vec<String>,
-    options: &'a RenderOptions,
+    pub(super) remarks: Vec<String>,
+    pub(super) options: &'a RenderOptions,
 }
 
 /// What `--json` prints.
@@ -77,7 +85,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let name = source::name(&args.scene);
     let loaded = source::load_with_text(&args.scene)?;
     let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
-    RenderCommand::new(&name, file, loaded, &args.options).run()
+    let command = RenderCommand::new(&name, file, loaded, &args.options);
+    match args.parts.job()? {
+        None => command.run(),
+        Some(job) => parts::run(&command, &job),
+    }
 }
 
 /// Renders the scene on stdin, as the notes' program does: lists the model on stderr, writes the picture to stdout.
@@ -100,6 +112,17 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
     command.run()
 }
 
+/// Refuses a folder where a picture's name belongs.
+pub(super) fn refuse_folder(target: &Target) -> Result<()> {
+    match target {
+        Target::Path(path) if path.is_dir() => bail!(
+            "cannot write {}: it is a folder; name the file too, such as picture.ppm",
+            path.display()
+        ),
+        _ => Ok(()),
+    }
+}
+
 /// Starts as many threads as were asked for, which the scene is read with and the picture compressed. If the system
 /// refuses they are done without, and the rendering tells it.
 fn start_threads(options: &RenderOptions) {
@@ -110,7 +133,7 @@ fn start_threads(options: &RenderOptions) {
 
 /// The process's devices. They are never closed, and the process does not end by returning from `main` (see `end`): who
 /// has a picture does not wait for a driver that may still be loading.
-fn devices() -> &'static Devices {
+pub(super) fn devices() -> &'static Devices {
     static DEVICES: OnceLock<Devices> = OnceLock::new();
     DEVICES.get_or_init(Devices::new)
 }
@@ -139,14 +162,14 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// Whether stderr is for talk: not if silence was asked for, nor if the report is the only thing to be there.
-    fn talks(&self) -> bool {
+    pub(super) fn talks(&self) -> bool {
         let report_on_stderr =
             self.options.json && self.target().is_ok_and(|target| target.is_stdout());
         !self.options.quiet && !report_on_stderr
     }
 
     /// Where the picture goes.
-    fn target(&self) -> Result<Target> {
+    pub(super) fn target(&self) -> Result<Target> {
         if let Some(output) = &self.options.output {
             return Ok(Target::from_argument(output.as_os_str()));
         }
@@ -167,7 +190,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
-    fn check(&self, target: &Target) -> Result<()> {
+    pub(super) fn check(&self, target: &Target) -> Result<()> {
         if target.is_stdout() {
             picture::check_stdout()?;
         }
@@ -181,14 +204,7 @@ impl<'a> RenderCommand<'a> {
     fn run(&self) -> Result<Answer> {
         let start = Instant::now();
         let target = self.target()?;
-        if let Target::Path(path) = &target
-            && path.is_dir()
-        {
-            bail!(
-                "cannot write {}: it is a folder; name the file too, such as picture.ppm",
-                path.display()
-            );
-        }
+        refuse_folder(&target)?;
         let format = target.format()?;
         let settings = self.options.settings(&self.scene, format.wants_values())?;
         self.check(&target)?;
@@ -284,7 +300,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// What the picture's file tells of how it was made.
-    fn metadata(&self, settings: &Settings) -> Metadata {
+    pub(super) fn metadata(&self, settings: &Settings) -> Metadata {
         let scene = self
             .file
             .and_then(Path::file_name)
@@ -293,7 +309,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// The error, with what would mend it.
-    fn explain(&self, error: render::Error) -> anyhow::Error {
+    pub(super) fn explain(&self, error: render::Error) -> anyhow::Error {
         match error {
             render::Error::Gpu(plumb::gpu::GpuError::NoAdapter) => {
                 anyhow!(
