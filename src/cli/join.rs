@@ -146,15 +146,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     }
     if args.check {
         if !args.quiet {
-            let parts = count(parts as usize, "part");
-            say::note(&format!(
-                "{} is there and right",
-                if parts == "1 part" {
-                    parts
-                } else {
-                    format!("all of {parts}")
-                }
-            ));
+            say::note(&format!("all {parts} parts are there and right"));
         }
         return Ok(answer(args, &survey));
     }

@@ -22,6 +22,7 @@ mod probe;
 mod progress;
 mod render;
 mod say;
+mod slurm;
 mod source;
 mod summary;
 mod values;
@@ -133,6 +134,8 @@ enum Command {
     Render(render::Args),
     /// Make a picture of its parts, which `plumb render --part` has made; exit 1 if some are missing
     Join(join::Args),
+    /// Print the script by which a Slurm cluster makes a picture in parts, or many pictures; or submit it
+    Slurm(slurm::Args),
     /// Tell every error of scene files, without touching a GPU
     Check(check::Args),
     /// Print what a scene becomes on its way to the GPU
@@ -183,6 +186,7 @@ fn run() -> u8 {
         None => render::filter(&cli.filter),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Join(args)) => join::run(&args),
+        Some(Command::Slurm(args)) => slurm::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Dump(args)) => dump::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),

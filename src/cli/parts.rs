@@ -12,6 +12,7 @@ use plumb::probe::digits::count;
 use plumb::render::{self, Backend, Report, Settings};
 use serde::Serialize;
 
+use super::args::{PrecisionName, RenderOptions};
 use super::join::{self, Whole};
 use super::progress::Progress;
 use super::render::{RenderCommand, devices, refuse_folder};
@@ -80,6 +81,19 @@ pub(crate) fn folder_of(output: &Path) -> PathBuf {
     name.into()
 }
 
+/// Refuses what parts cannot have.
+pub(crate) fn refuse(options: &RenderOptions) -> Result<()> {
+    if options.precision == PrecisionName::Fast {
+        bail!(
+            "--precision fast gives other bytes on every device, so its parts would not fit together: leave it out"
+        );
+    }
+    if options.verdicts.is_some() || options.shown().is_some() {
+        bail!("--verdicts and --debug are of pictures that are made in one piece: leave them out");
+    }
+    Ok(())
+}
+
 /// A picture in parts.
 struct Picture<'a> {
     command: &'a RenderCommand<'a>,
@@ -138,16 +152,7 @@ pub(crate) fn run(command: &RenderCommand<'_>, job: &Job<'_>) -> Result<Answer> 
 impl<'a> Picture<'a> {
     fn new(command: &'a RenderCommand<'a>, job: &Job<'_>) -> Result<Self> {
         let (scene, options) = (&command.scene, command.options);
-        if options.precision == super::args::PrecisionName::Fast {
-            bail!(
-                "--precision fast gives other bytes on every device, so its parts would not fit together: leave it out"
-            );
-        }
-        if options.verdicts.is_some() || options.shown().is_some() {
-            bail!(
-                "--verdicts and --debug are of pictures that are made in one piece: leave them out"
-            );
-        }
+        refuse(options)?;
         let target = command.target()?;
         refuse_folder(&target)?;
         let format = target.format()?;

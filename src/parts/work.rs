@@ -90,6 +90,11 @@ impl Work {
         }
     }
 
+    /// The same for all rows, where nothing is known of them.
+    pub fn even() -> Self {
+        Self::of_blocks(vec![1])
+    }
+
     /// The work of blocks that are given.
     pub(super) fn of_blocks(blocks: Vec<u64>) -> Self {
         let samples = blocks.len() as u64;

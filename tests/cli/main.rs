@@ -6,6 +6,8 @@ mod bad_light;
 mod basics;
 mod bench;
 mod certified;
+#[cfg(target_os = "linux")]
+mod cluster;
 mod desk;
 mod endings;
 mod errors;
@@ -14,3 +16,6 @@ mod gpu;
 mod inspect;
 mod lit;
 mod options;
+mod parts;
+#[cfg(target_os = "linux")]
+mod slurm;
