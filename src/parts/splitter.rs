@@ -8,7 +8,7 @@ use super::header::Header;
 use super::identity::Identity;
 use super::writer::{PartFile, Rows};
 use crate::frame::Band;
-use crate::image::{Metadata, OutputError};
+use crate::image::{Metadata, OutputError, Target};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -82,6 +82,7 @@ impl<'a> Splitter<'a> {
         let width = self.like.width as usize;
         let mut end = band.rows.end;
         while end > band.rows.start {
+            let path = self.folder.part(self.next, self.cut.parts());
             let part = self.open().map_err(io::Error::other)?;
             let missing = part.missing();
             if missing.end != end {
@@ -96,7 +97,10 @@ impl<'a> Splitter<'a> {
                 values: band.values.as_ref().map(|values| &values[range.clone()]),
                 verdicts: band.verdicts.as_ref().map(|verdicts| &verdicts[range]),
             };
-            part.write(end - start, rows)?;
+            part.write(end - start, rows).map_err(|source| {
+                let target = Target::Path(path);
+                io::Error::other(OutputError::Write { target, source })
+            })?;
             if start == missing.start
                 && let Some(part) = self.current.take()
             {
