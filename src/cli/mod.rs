@@ -67,6 +67,10 @@ EXAMPLES
   plumb check scenes/*/*.txt            every error of every file
   plumb probe scene.txt 100 40          why a pixel is what it is (y upwards)
   plumb compare a.ppm b.png             are they the same, and if not, where?
+  plumb render scene.txt -o big.png --size 100000x100000 --resume
+                                        goes on where it was stopped
+  plumb slurm scene.txt -o big.png --parts 64 > big.sh
+                                        the same on a cluster (docs/CLUSTER.md)
   plumb doctor                          which GPU would be used, and why
   plumb bench scene.txt --plot out.svg  what each way to render it costs, in time
                                         and in error
@@ -94,7 +98,8 @@ THE SCENE LANGUAGE
 EXIT CODES
   0   done
   1   done, and the answer is no: pictures differ (compare), no adapter that can
-      be used or trusted (doctor), bytes presumed and not proven (render --strict)
+      be used or trusted (doctor), bytes presumed and not proven (--strict), parts
+      missing or wrong (join)
   2   bad input or failure; what is wrong is on stderr
   130 ended by Ctrl-C or SIGTERM; no unfinished file remains
 

@@ -322,7 +322,7 @@ fn what_parts_cannot_have_is_refused() {
 fn a_killed_rendering_goes_on() {
     let desk = Desk::new();
     desk.write("lit.txt", LIT);
-    let options = ["--backend", "cpu", "--size", "320x240", "--samples", "60"];
+    let options = ["--backend", "cpu", "--size", "320x240", "--samples", "20"];
     let args = |output| [&["render", "lit.txt", "-o", output][..], &options].concat();
     let resume = [&args("a.png")[..], &["--resume"]].concat();
     // By chance, but the same at every run.

@@ -7,6 +7,7 @@ use std::process::Command;
 use super::cluster::Cluster;
 use super::desk::{Desk, LIT, Ran};
 
+#[allow(dead_code, reason = "only the driver's name is wanted")]
 #[path = "../common/drivers.rs"]
 mod drivers;
 
