@@ -181,6 +181,12 @@ fn a_cluster_makes_the_same_file_whatever_happens() {
         site.logs()
     );
 
+    // Where the parts are gone and the picture is there, nothing is made again.
+    fs::rename(desk.path("big.png.parts"), desk.path("kept")).unwrap();
+    let told = site.shell("bash big.sh missing").ends(0).text();
+    assert!(told.starts_with("nothing is missing"), "{told}");
+    fs::rename(desk.path("kept"), desk.path("big.png.parts")).unwrap();
+
     // A task that fails goes back into the queue, where it is asked for.
     fs::remove_file(desk.path("mended")).unwrap();
     fs::remove_file(site.part(9)).unwrap();

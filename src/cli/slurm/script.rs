@@ -197,7 +197,11 @@ fi
         add(format!("1-{parts}\n").as_bytes());
         add(b"join=(\"$plumb\" ");
         add(&line(join));
-        add(b")\n");
+        add(b")\npicture=");
+        add(&quoted(&joined));
+        add(b"\nfolder=");
+        add(&quoted(folder.as_os_str()));
+        add(b"\n");
         add(SUBMIT_PARTS
             .replace("REMOVE", if *remove { " --remove" } else { "" })
             .as_bytes());
@@ -238,6 +242,11 @@ fn lists(pictures: &[(PathBuf, PathBuf)], tasks: u32) -> Vec<u8> {
 const SUBMIT_PARTS: &str = r#"
 set -eu
 if [ "${1-}" = missing ]; then
+    # Where the parts were removed the picture is whole.
+    if [ -e "$picture" ] && [ ! -e "$folder" ]; then
+        echo "nothing is missing: $picture is there"
+        exit
+    fi
     if parts=$("${join[@]}" --check); then
         parts=
     elif [ -z "$parts" ]; then
