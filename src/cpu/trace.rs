@@ -39,7 +39,7 @@ pub fn find_closest_object<R: Real>(
             object: plane.object,
             index,
         });
-        if !takes(&mut closest, hit)? {
+        if !takes(scene, &mut closest, hit)? {
             R::release(mark);
         }
     }
@@ -50,7 +50,7 @@ pub fn find_closest_object<R: Real>(
             object: quadric.object,
             index,
         });
-        if !takes(&mut closest, hit)? {
+        if !takes(scene, &mut closest, hit)? {
             R::release(mark);
         }
     }
@@ -72,7 +72,7 @@ pub fn find_closest_object<R: Real>(
             object: sphere.object,
             index,
         });
-        if !takes(closest, hit)? {
+        if !takes(scene, closest, hit)? {
             R::release(mark);
         }
         Ok(())
@@ -85,7 +85,7 @@ pub fn find_closest_object<R: Real>(
             object: triangle.object,
             index,
         });
-        if !takes(closest, hit)? {
+        if !takes(scene, closest, hit)? {
             R::release(mark);
         }
         Ok(())
@@ -121,12 +121,20 @@ fn at_least<R: Real>(number: R) -> f64 {
 
 /// Takes `hit`, if there is one, where it is nearer than `closest`, or as near and first in the file. Whether it did.
 #[inline]
-fn takes<R: Real>(closest: &mut Option<Hit<R>>, hit: Option<Hit<R>>) -> Result<bool, Undecided> {
+fn takes<R: Real>(
+    scene: &Prepared<R>,
+    closest: &mut Option<Hit<R>>,
+    hit: Option<Hit<R>>,
+) -> Result<bool, Undecided> {
     let Some(hit) = hit else {
         return Ok(false);
     };
     let takes = match closest {
         None => true,
+        // Surfaces that coincide are met at the same place: a tie all over, which no digits tell.
+        Some(best) if scene.groups[best.object] == scene.groups[hit.object] => {
+            hit.object < best.object
+        }
         Some(best) => {
             let difference = hit.inverse - best.inverse;
             difference.positive()? || (hit.object < best.object && difference.non_negative()?)
