@@ -9,9 +9,13 @@ use crate::prepare::plane::Sides;
 use crate::prepare::{Plane, WorldPlane};
 use crate::real::{Bounded, Real, Undecided, V3};
 
-/// 1/s of the hit on the plane, or None for a miss.
+/// 1/s of the hit on the plane, or None for a miss, and where that is surely below `least`.
 #[inline]
-pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
+pub fn plane_hits<R: Real>(
+    plane: &Plane<R>,
+    ray: &Ray<R>,
+    least: f64,
+) -> Result<Option<R>, Undecided> {
     if let Some(front) = &plane.front {
         let [x, y] = ray.pixel;
         let side = front[0].times(x) + front[1].times(y) + front[2];
@@ -22,6 +26,10 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
     let along = |form: &[R; 3]| form[0] * ray.w.x + form[1] * ray.w.y + form[2];
     let inverse = along(&plane.inverse);
     if !inverse.positive()? {
+        return Ok(None);
+    }
+    let Bounded { value, error } = inverse.quick_enclosure();
+    if value + error * Bounded::GROW < least {
         return Ok(None);
     }
     match &plane.sides {

@@ -34,7 +34,7 @@ pub fn find_closest_object<R: Real>(
     let mut closest: Option<Hit<R>> = None;
     for (index, plane) in scene.planes.iter().enumerate() {
         let mark = R::mark();
-        let hit = plane_hits(plane, ray)?.map(|inverse| Hit {
+        let hit = plane_hits(plane, ray, at_least(closest.as_ref()))?.map(|inverse| Hit {
             inverse,
             object: plane.object,
             index,
@@ -80,7 +80,7 @@ pub fn find_closest_object<R: Real>(
     let triangle = |closest: &mut Option<Hit<R>>, index: usize| -> Result<(), Undecided> {
         let mark = R::mark();
         let triangle = scene.triangle(index).ok_or(Undecided)?;
-        let hit = plane_hits(&triangle, ray)?.map(|inverse| Hit {
+        let hit = plane_hits(&triangle, ray, at_least(closest.as_ref()))?.map(|inverse| Hit {
             inverse,
             object: triangle.object,
             index,
@@ -99,10 +99,7 @@ pub fn find_closest_object<R: Real>(
     for &index in screen_grid.at(ray.pixel) {
         let index = index as usize;
         // The nearest come first: the others lie behind what is hit.
-        if closest
-            .as_ref()
-            .is_some_and(|hit| f64::from(screen_grid.max_inverse[index]) < at_least(hit.inverse))
-        {
+        if f64::from(screen_grid.max_inverse[index]) < at_least(closest.as_ref()) {
             break;
         }
         match index.checked_sub(scene.sphere_count()) {
@@ -113,10 +110,13 @@ pub fn find_closest_object<R: Real>(
     Ok(closest)
 }
 
-/// The least f64 that a number may be.
-fn at_least<R: Real>(number: R) -> f64 {
-    let Bounded { value, error } = number.enclosure();
-    value - (error + value.abs() * f64::EPSILON) * Bounded::GROW
+/// What 1/s of a hit has to be for it to matter beside the closest.
+#[inline]
+fn at_least<R: Real>(closest: Option<&Hit<R>>) -> f64 {
+    closest.map_or(f64::NEG_INFINITY, |hit| {
+        let Bounded { value, error } = hit.inverse.quick_enclosure();
+        value - (error + value.abs() * f64::EPSILON) * Bounded::GROW
+    })
 }
 
 /// Takes `hit`, if there is one, where it is nearer than `closest`, or as near and first in the file. Whether it did.
