@@ -9,6 +9,7 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::bounded::POWER_GROWTH;
 use super::float::nearest_f32_by_middle;
 use super::rational::{Ratio, ratio};
 use super::{Bounded, Real, Undecided, lazy};
@@ -89,6 +90,14 @@ impl Pair {
     /// The number that is within a bound of an f64, given what is known of the rest.
     pub(super) fn from_parts(first: f64, rest: Bounded) -> Self {
         Self::of(first, rest.value, rest.error)
+    }
+
+    /// The same with what rounding took from its bound made up for, as in a power of `Bounded`.
+    fn grown(self) -> Self {
+        Self {
+            error: self.error * POWER_GROWTH,
+            ..self
+        }
     }
 
     /// What the factors' errors make of that of their product.
@@ -217,16 +226,16 @@ impl Real for Pair {
         let (mut result, mut square, mut root) = (Self::exact(1.0), self, self);
         while whole > 0.0 {
             if whole % 2.0 == 1.0 {
-                result = result * square;
+                result = (result * square).grown();
             }
             whole = (whole / 2.0).floor();
-            square = square * square;
+            square = (square * square).grown();
         }
         while part > 0.0 {
             root = root.sqrt();
             part *= 2.0;
             if part >= 1.0 {
-                result = result * root;
+                result = (result * root).grown();
                 part -= 1.0;
             }
         }
