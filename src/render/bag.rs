@@ -146,6 +146,11 @@ impl Bag {
         self.lock().is_warming()
     }
 
+    /// Whether all rows are made, whether they went out or not.
+    pub(super) fn is_made(&self) -> bool {
+        self.lock().is_made()
+    }
+
     /// Whether no other worker makes bands, or may make some.
     pub(super) fn is_alone(&self, worker: usize) -> bool {
         self.lock().is_alone(worker)

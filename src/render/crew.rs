@@ -118,7 +118,10 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
         let bag = &self.rendering.bag;
         let ask_for_software = || {
             bag.expect(true);
-            devices.ask(Wanted::new(settings, true), sender.clone());
+            devices.ask(
+                Wanted::new(settings, true),
+                News::of_devices(sender.clone()),
+            );
         };
         if !asked {
             if self.rendering.is_quick_on_cpu() || !bag.lasts(STARTING) {

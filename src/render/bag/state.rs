@@ -133,6 +133,11 @@ impl State {
             && self.out.iter().all(|out| out.job.check.is_none())
     }
 
+    /// Whether nobody makes rows any more, nor is to.
+    pub(super) fn is_made(&self) -> bool {
+        self.rows_left() == 0 && self.out.is_empty()
+    }
+
     /// Rows that have not been given to anybody, or were given back.
     fn rows_left(&self) -> u64 {
         let jobs = self.jobs.values().map(|job| job.rows.len() as u64);
@@ -256,7 +261,7 @@ impl State {
         // The CPU stays until all is over: a device that is still busy with a band that another one brought may be found
         // to be wrong, and all that it brought is to be made again then. Nobody stands by for a device that is done.
         let is_device = self.workers[me].kind == Kind::Device;
-        if is_device && self.rows_left() == 0 && self.out.is_empty() {
+        if is_device && self.is_made() {
             self.leave(me);
             return Taken::End;
         }
