@@ -136,8 +136,9 @@ impl Bag {
         }
     }
 
-    /// A worker that uses the same cores is getting ready, or will not come.
-    pub(super) fn expect(&self, expected: bool) {
+    /// A worker that uses the same cores is getting ready, while the others work on this part of them; or it will not
+    /// come.
+    pub(super) fn expect(&self, expected: Option<f64>) {
         self.change(|state| state.expected = expected);
     }
 

@@ -56,8 +56,8 @@ pub(super) struct State {
     revoked: Vec<(usize, Arc<str>)>,
     workers: Vec<Worker>,
     trial: Trial,
-    /// Whether a worker on trial has come or will.
-    pub(super) expected: bool,
+    /// If a worker on trial has come or will: the part of their cores that the others use until it has brought a band.
+    pub(super) expected: Option<f64>,
     /// How many devices' bands the CPU refines at the moment.
     pub(super) refining: u32,
     pub(super) error: Option<Error>,
@@ -79,7 +79,7 @@ impl State {
             revoked: Vec::new(),
             workers: Vec::new(),
             trial: Trial::default(),
-            expected: false,
+            expected: None,
             refining: 0,
             error: None,
             over: false,
@@ -106,7 +106,7 @@ impl State {
 
     /// Whether a worker is getting ready that uses the same cores.
     pub(super) fn is_warming(&self) -> bool {
-        self.expected && self.trial.is_warming()
+        self.expected.is_some() && self.trial.is_warming()
     }
 
     pub(super) fn is_alone(&self, me: usize) -> bool {
@@ -180,7 +180,6 @@ impl State {
         let Some(job) = self.next_job(me, wish) else {
             return self.twice(me, most);
         };
-        self.trial.took(self.workers[me].role, &job.rows);
         self.hand_out(me, job)
     }
 
@@ -326,7 +325,6 @@ impl State {
             return;
         };
         self.learn(me, &out);
-        self.trial.closed(&out.job.rows);
         let Some((expected, why)) = out.job.check else {
             self.finished.insert(finished.band.rows.end, Ok(finished));
             return;
@@ -360,13 +358,21 @@ impl State {
                 .speed
                 .map_or(speed, |before| (before + speed) / 2.0),
         );
-        let left = self.rows_left() as f64 * self.width as f64;
-        if let Some(quicker) = self
-            .trial
-            .learns(self.workers[me].role, &out.job.rows, speed, left)
-        {
-            self.decide(quicker);
+        if self.workers[me].role == Role::OnTrial {
+            let left = self.rows_left() as f64 * self.width as f64;
+            let other = self.speed_against_trial();
+            if let Some(quicker) = self.trial.learns(speed, other, left) {
+                self.decide(quicker);
+            }
         }
+    }
+
+    /// How quick those are that another one is tried against, on all their cores; none if they brought nothing yet.
+    fn speed_against_trial(&self) -> Option<f64> {
+        let works = |worker: &&Worker| worker.role == Role::Works && !worker.left;
+        let speeds = self.workers.iter().filter(works);
+        let speed: f64 = speeds.filter_map(|worker| worker.activity.speed).sum();
+        (speed > 0.0).then(|| speed / self.expected.unwrap_or(1.0))
     }
 
     /// The trial is over: whoever was quicker makes the rest.
@@ -404,7 +410,6 @@ impl State {
 
     pub(super) fn halt(&mut self, rows: &Range<u32>, halt: Halt) {
         if let Some(out) = self.close(rows) {
-            self.trial.closed(rows);
             match out.job.check {
                 None => {
                     self.finished.insert(rows.end, Err(halt));
@@ -424,13 +429,12 @@ impl State {
         self.workers[me].left = true;
         if self.workers[me].role == Role::OnTrial {
             self.trial = Trial::default();
-            self.expected = false;
+            self.expected = None;
         }
         let mut kept = Vec::new();
         for mut out in std::mem::take(&mut self.out) {
             out.by.retain(|(worker, _)| *worker != me);
             if out.by.is_empty() {
-                self.trial.closed(&out.job.rows);
                 self.give_back(out.job);
             } else {
                 kept.push(out);
