@@ -14,7 +14,7 @@ use super::rendering::Rendering;
 
 /// What the CPU has done in this time it does alone: loading a software driver and compiling a shader there takes about
 /// so long, and a core.
-const STARTING: Duration = Duration::from_millis(200);
+const STARTING: Duration = Duration::from_millis(100);
 
 /// Who wants to hear that a rendering is over.
 pub(super) type Listeners = Mutex<Vec<Sender<News>>>;
