@@ -358,4 +358,4 @@ impl Real for Bounded {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
