@@ -121,7 +121,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         let _ = plumb::cores::start(args.threads);
     }
     let target = Target::from_argument(args.output.as_os_str());
-    super::render::refuse_folder(&target)?;
+    if target.path().is_dir() {
+        bail!("cannot write {target}: it is a folder; name the file too, such as picture.ppm");
+    }
     let format = target.format()?;
     if target.is_stdout() && !args.check {
         picture::check_stdout()?;

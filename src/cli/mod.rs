@@ -9,14 +9,17 @@ mod cache;
 mod check;
 mod compare;
 mod completions;
+mod destination;
 mod doctor;
 mod dump;
 mod end;
 mod inherited;
 mod join;
+mod many;
 mod outputs;
 mod parts;
 mod picture;
+mod place;
 mod preview;
 mod probe;
 mod progress;
@@ -30,11 +33,10 @@ mod values;
 use std::env;
 use std::path::Path;
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use args::RenderOptions;
-use plumb::image::Format;
 
 /// What `--version` and the reports call the program.
 pub(crate) const SOFTWARE: &str = concat!("plumb ", env!("CARGO_PKG_VERSION"));
@@ -135,7 +137,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Render a scene into a picture: PPM, PNG or EXR
+    /// Render scenes into pictures: PPM, PNG or EXR
     Render(render::Args),
     /// Make a picture of its parts, which `plumb render --part` has made; exit 1 if some are missing
     Join(join::Args),
@@ -189,7 +191,7 @@ fn run() -> u8 {
     inherited::on_signals(interrupted);
     let ended = match cli.command {
         None => render::filter(&cli.filter),
-        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Render(args)) => many::run(&args),
         Some(Command::Join(args)) => join::run(&args),
         Some(Command::Slurm(args)) => slurm::run(&args),
         Some(Command::Check(args)) => check::run(&args),
@@ -236,13 +238,6 @@ fn usage(error: &clap::Error) -> u8 {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => FAILED,
             _ => DONE,
         };
-    }
-    // A picture's name behind the scene's, as other programs have it.
-    if error.kind() == ErrorKind::UnknownArgument
-        && let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg)
-        && Format::from_path(Path::new(argument)).is_ok()
-    {
-        say::talk(&format!("\n  tip: to name the picture: -o {argument}\n"));
     }
     if matches!(
         error.kind(),

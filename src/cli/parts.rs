@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::args::{PrecisionName, RenderOptions};
 use super::join::{self, Whole};
 use super::progress::Progress;
-use super::render::{RenderCommand, devices, refuse_folder};
+use super::render::{RenderCommand, devices};
 use super::summary::{summary, told};
 use super::values::{Share, share};
 use super::{Answer, SOFTWARE, say};
@@ -153,8 +153,7 @@ impl<'a> Picture<'a> {
     fn new(command: &'a RenderCommand<'a>, job: &Job<'_>) -> Result<Self> {
         let (scene, options) = (&command.scene, command.options);
         refuse(options)?;
-        let target = command.target()?;
-        refuse_folder(&target)?;
+        let target = command.targets.picture.clone();
         let format = target.format()?;
         let (Some(stem), false) = (target.path().file_stem(), target.is_stdout()) else {
             bail!("parts are called by their picture's name: give one with -o");

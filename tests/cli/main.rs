@@ -15,6 +15,7 @@ mod files;
 mod gpu;
 mod inspect;
 mod lit;
+mod many;
 mod options;
 mod parts;
 #[cfg(target_os = "linux")]
