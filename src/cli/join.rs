@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         }
         return Ok(answer(args, &survey));
     }
-    let talks = !args.quiet && !(args.json && target.is_stdout());
+    let talks = !(args.quiet || args.json && target.is_stdout());
     let Some(finished) = write(&survey, &target, format, args.json, talks)? else {
         survey.check_rows();
         return tell_missing(args, &survey, &target);

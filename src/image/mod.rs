@@ -21,10 +21,12 @@ pub mod compare;
 mod document;
 mod error;
 pub mod exr;
+mod left;
 mod output;
 mod png;
 pub mod read;
 mod sink;
+mod size;
 mod target;
 
 use std::fmt;
@@ -33,9 +35,11 @@ use std::path::Path;
 pub use compare::{Comparison, SizesDiffer, compare, difference};
 pub use document::Document;
 pub use error::OutputError;
-pub use output::{Finished, HASH_KEY, Metadata, Output, check_size};
+pub use left::remove_left;
+pub use output::{Finished, HASH_KEY, Metadata, Output};
 pub use read::{Picture, ReadError, read, read_with_remark};
-pub use sink::{remove_left, remove_unfinished};
+pub use sink::remove_unfinished;
+pub use size::check_size;
 pub use target::Target;
 
 /// The formats that pictures are written in.

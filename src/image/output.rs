@@ -6,9 +6,10 @@ use std::io::{self, Write};
 
 use sha2::{Digest, Sha256};
 
-use super::exr::{self, Exr};
+use super::exr::Exr;
 use super::png::Png;
 use super::sink::Sink;
+use super::size::{check_size, size_error};
 use super::target::Target;
 use super::{Format, OutputError};
 use crate::cores;
@@ -19,9 +20,6 @@ use crate::settings::Settings;
 
 /// The key of the picture's hash among the metadata.
 pub const HASH_KEY: &str = "plumb:sha256";
-
-/// Width and height that a PNG can have at most.
-const PNG_MOST: u32 = i32::MAX as u32;
 
 /// Bytes of one text at most: far more than any of ours, far less than a PNG's chunk may hold.
 const TEXT_MOST: usize = 1 << 20;
@@ -131,35 +129,6 @@ pub struct Finished {
     pub sha256: Option<String>,
     /// Length of the file that was written, in bytes.
     pub bytes: u64,
-}
-
-fn size_error(format: Format, width: u32, rows: u32, problem: String) -> OutputError {
-    OutputError::Size {
-        width,
-        rows,
-        format,
-        problem,
-    }
-}
-
-/// Whether the format can hold a picture of this size.
-///
-/// # Errors
-/// [`OutputError::Size`] if it cannot.
-pub fn check_size(format: Format, width: u32, rows: u32) -> Result<(), OutputError> {
-    let problem = if width == 0 || rows == 0 {
-        "it has no pixels".into()
-    } else if format == Format::Png && width.max(rows) > PNG_MOST {
-        format!("the most is {PNG_MOST} each way")
-    } else if format == Format::Exr && u64::from(width) * u64::from(rows) > exr::MAX_PIXELS {
-        format!(
-            "it is kept in memory, {} million pixels at most; PNG and PPM have no such limit",
-            exr::MAX_PIXELS / 1_000_000
-        )
-    } else {
-        return Ok(());
-    };
-    Err(size_error(format, width, rows, problem))
 }
 
 /// One picture on its way. [`finish`](Output::finish) gives it its name; dropped without, nothing remains.

@@ -15,7 +15,6 @@
 //! end without dropping anything. Only a process that is killed outright leaves one, `.plumb-NAME-…`; who takes over
 //! its work removes that ([`remove_left`]).
 
-use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -25,6 +24,7 @@ use std::thread;
 use tempfile::TempPath;
 
 use super::OutputError;
+use super::left::prefix;
 use super::target::{self, Found, Target};
 
 /// Bytes gathered before they are handed to the system.
@@ -198,43 +198,6 @@ fn beside(path: &Path, end: &Path) -> Result<(File, Unfinished), OutputError> {
         .into_parts();
     registry.unfinished.push(temporary.to_path_buf());
     Ok((file, Unfinished(Some(temporary))))
-}
-
-/// What every file beside begins with.
-const BESIDE: &str = ".plumb-";
-
-/// The longest name that is told in the name of a file beside: names have 255 bytes on most systems.
-const MOST_TOLD: usize = 200;
-
-/// What the name of a file beside `end` begins with; letters and digits by chance follow.
-fn prefix(end: &Path) -> OsString {
-    let mut prefix = OsString::from(BESIDE);
-    let name = end.file_name().filter(|name| name.len() <= MOST_TOLD);
-    if let Some(name) = name {
-        prefix.push(name);
-        prefix.push("-");
-    }
-    prefix
-}
-
-/// Removes the files beside that processes which were killed outright have left in a folder, of the names that
-/// `is_ours`. Those of processes that still write are removed too, so nobody else may be writing them.
-///
-/// # Errors
-/// If the folder cannot be read; a file that cannot be removed stays.
-pub fn remove_left(folder: &Path, is_ours: &dyn Fn(&str) -> bool) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
-        let name = entry.file_name();
-        let told = name
-            .to_str()
-            .and_then(|name| name.strip_prefix(BESIDE)?.rsplit_once('-'));
-        if told.is_some_and(|(name, _)| is_ours(name)) {
-            // It is in nobody's way.
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-    Ok(())
 }
 
 /// Gives `file` the mode of the file it is to replace. False if that is not all that tells the two apart, so that

@@ -18,5 +18,7 @@ mod lit;
 mod many;
 mod options;
 mod parts;
+#[cfg(unix)]
+mod resume;
 #[cfg(target_os = "linux")]
 mod slurm;
