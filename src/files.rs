@@ -5,21 +5,36 @@
 
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Whether both names lead to one regular file that is there, through links of either kind: what is written to one of
-/// them destroys the other.
-#[cfg(unix)]
-pub fn is_same_file(a: &Path, b: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let place = |found: &fs::Metadata| (found.dev(), found.ino());
-    matches!((fs::metadata(a), fs::metadata(b)), (Ok(a), Ok(b)) if a.is_file() && place(&a) == place(&b))
+/// What tells a file from all others, whatever names lead to it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Identity {
+    /// Of one that is there: the numbers of its device and of its place there.
+    Numbers(u64, u64),
+    /// Of one that is to come, or where the system tells no such numbers: its name without links. Hard links are not
+    /// seen there.
+    Name(PathBuf),
 }
 
-/// Whether both names lead to one file that is there. Hard links are not seen here.
-#[cfg(not(unix))]
+/// The identity of the regular file that a name leads to, through links of either kind; none if there is none.
+pub fn identity(path: &Path) -> Option<Identity> {
+    let found = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Some(Identity::Numbers(found.dev(), found.ino()))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = found;
+        fs::canonicalize(path).ok().map(Identity::Name)
+    }
+}
+
+/// Whether both names lead to one regular file that is there: what is written to one of them destroys the other.
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+    identity(a).is_some_and(|a| identity(b) == Some(a))
 }
 
 /// Whether a name is one that systems and shells give to a stream, as `/dev/stdin` and what `<(…)` becomes: it says

@@ -33,6 +33,8 @@ pub enum DecidedBy {
     Single,
     /// f64 with error bounds.
     Bounded,
+    /// Pairs of f64 with error bounds.
+    Pairs,
     /// Numbers of 128 bits and more, or exact ones that differ.
     Multiprecision,
     /// Exact arithmetic: the pixel lies on a border, which was proven.
@@ -43,10 +45,11 @@ pub enum DecidedBy {
 
 impl DecidedBy {
     /// All of them, in order; each stands at its own number.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Gpu,
         Self::Single,
         Self::Bounded,
+        Self::Pairs,
         Self::Multiprecision,
         Self::Exact,
         Self::Presumed,
@@ -58,6 +61,7 @@ impl DecidedBy {
             Self::Gpu => "gpu",
             Self::Single => "f32",
             Self::Bounded => "f64",
+            Self::Pairs => "pairs",
             Self::Multiprecision => "multiprecision",
             Self::Exact => "tie",
             Self::Presumed => "presumed",

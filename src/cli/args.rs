@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use clap::builder::NonEmptyStringValueParser;
 use plumb::cpu::debug::Shown;
 use plumb::cpu::trace::Limits;
+use plumb::image::Target;
 use plumb::render::{Backend, Precision, SamplePattern, Settings};
 use plumb::scene::Scene;
 use plumb::settings::MAX_SAMPLES;
@@ -120,6 +121,10 @@ pub(crate) struct RenderOptions {
         value_name = "OUT",
         long_help = "\
 The picture, by its ending .ppm, .png or .exr (EXR holds the values before quantising); `-` is stdout, as PPM.
+
+Each {} in the name stands for the scene's own, without its folder and ending: 'out/{}.png'. A folder, which has to be \
+there, takes the scene's name with .ppm. Of several scenes stdout takes one picture after the other, in the order of \
+the scenes; two that would be one file are refused before anything is rendered.
 
 Without it: the scene's name with .ppm, in the current folder; stdout if the scene comes from stdin. A regular file is \
 written beside and renamed when it is whole; devices, pipes and links are written through."
@@ -272,6 +277,12 @@ impl RenderOptions {
             cache: cache::folder(),
             ..picture
         })
+    }
+
+    /// Whether stderr is for talk where the picture goes there: not if silence was asked for, nor if the report is the
+    /// only thing to be there.
+    pub(crate) fn talks(&self, picture: &Target) -> bool {
+        !self.quiet && !(self.json && picture.is_stdout())
     }
 
     /// What `--debug` asks for, if anything.

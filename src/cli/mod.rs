@@ -9,12 +9,15 @@ mod cache;
 mod check;
 mod compare;
 mod completions;
+mod destination;
 mod doctor;
 mod dump;
 mod end;
 mod inherited;
+mod many;
 mod outputs;
 mod picture;
+mod place;
 mod preview;
 mod probe;
 mod progress;
@@ -27,11 +30,10 @@ mod values;
 use std::env;
 use std::path::Path;
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use args::RenderOptions;
-use plumb::image::Format;
 
 /// What `--version` and the reports call the program.
 pub(crate) const SOFTWARE: &str = concat!("plumb ", env!("CARGO_PKG_VERSION"));
@@ -127,7 +129,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Render a scene into a picture: PPM, PNG or EXR
+    /// Render scenes into pictures: PPM, PNG or EXR
     Render(render::Args),
     /// Tell every error of scene files, without touching a GPU
     Check(check::Args),
@@ -177,7 +179,7 @@ fn run() -> u8 {
     inherited::on_signals(interrupted);
     let ended = match cli.command {
         None => render::filter(&cli.filter),
-        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Render(args)) => many::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Dump(args)) => dump::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
@@ -222,13 +224,6 @@ fn usage(error: &clap::Error) -> u8 {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => FAILED,
             _ => DONE,
         };
-    }
-    // A picture's name behind the scene's, as other programs have it.
-    if error.kind() == ErrorKind::UnknownArgument
-        && let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg)
-        && Format::from_path(Path::new(argument)).is_ok()
-    {
-        say::talk(&format!("\n  tip: to name the picture: -o {argument}\n"));
     }
     if matches!(
         error.kind(),

@@ -12,16 +12,17 @@ use plumb::cores;
 use plumb::cpu::debug::list_pixels;
 use plumb::cpu::pixel::ExactTracer;
 use plumb::diagnostic::visible_text;
-use plumb::files::is_stream;
 use plumb::image::{Finished, Format, Metadata, Target};
 use plumb::prepare::Prepared;
-use plumb::render::{self, Backend, Devices, PixelFault, Report, Settings};
+use plumb::render::{self, Backend, Band, Devices, PixelFault, Report, Settings};
 use plumb::scene::{Scene, list_model};
 use serde::Serialize;
 
 use super::args::RenderOptions;
+use super::destination::Destination;
 use super::outputs::Outputs;
 use super::picture::{self, PictureFile};
+use super::place::Place;
 use super::progress::Progress;
 use super::summary::{answer, summary, told};
 use super::{Answer, SOFTWARE, say, source};
@@ -34,28 +35,62 @@ EXAMPLES
   plumb render scene.txt -o big.png --size 3840x2160
   plumb render scene.txt -o values.exr   the values before they become bytes
   plumb render scene.txt -o - | display  PPM on stdout
+  plumb render frames/*.txt -o 'out/{}.png'
+                                         many pictures, each with its scene's name
+  plumb render frames/*.txt -o - | ffmpeg -f image2pipe -c:v ppm -i - film.mp4
   plumb render scene.txt --rows ..100    the lowest 100 rows
   plumb render scene.txt --verdicts why.png --strict
                                          what decided each pixel; exit 1 if any
                                          byte is not proven
   plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt")]
 pub(crate) struct Args {
-    /// The scene file; `-` is stdin
-    scene: PathBuf,
+    /// The scene file; `-` is stdin. Of several each becomes a picture
+    #[arg(
+        required = true,
+        value_name = "SCENE",
+        long_help = "\
+The scene file; `-` is stdin. Several become as many pictures, in one run: devices and shaders are kept, and while one \
+picture is made the next scene is read and the one before is written. Of those that are wrong it is told; the others \
+are made, and the exit code is 2. With --json there is a line for each, {\"scene\": …, \"error\": …} where there is no \
+picture."
+    )]
+    pub(crate) scenes: Vec<PathBuf>,
     #[command(flatten)]
-    options: RenderOptions,
+    pub(crate) options: RenderOptions,
 }
 
 /// What is rendered, and under which name.
-struct RenderCommand<'a> {
+pub(crate) struct RenderCommand<'a> {
     /// What errors and reports call the scene.
     name: &'a str,
     /// The scene's file, if it has one.
     file: Option<&'a Path>,
+    targets: Targets,
     scene: Scene,
     /// What may surprise in its picture.
     remarks: Vec<String>,
     options: &'a RenderOptions,
+    /// Its place among many.
+    place: Option<&'a Place<'a>>,
+}
+
+/// Where the picture goes, and the one of its verdicts.
+pub(crate) struct Targets {
+    pub(crate) picture: Target,
+    pub(crate) verdicts: Option<Target>,
+}
+
+impl Targets {
+    /// Of the scene with this file.
+    pub(crate) fn new(options: &RenderOptions, file: Option<&Path>) -> Result<Self> {
+        let picture = Destination::of(options.output.as_deref()).target(file)?;
+        let verdicts = options.verdicts.as_deref();
+        let verdicts = verdicts.map(|path| Destination::of(Some(path)).target(file));
+        Ok(Self {
+            picture,
+            verdicts: verdicts.transpose()?,
+        })
+    }
 }
 
 /// What `--json` prints.
@@ -71,13 +106,18 @@ struct JsonReport<'a> {
     report: &'a Report,
 }
 
-/// Renders a scene file.
-pub(crate) fn run(args: &Args) -> Result<Answer> {
-    start_threads(&args.options);
-    let name = source::name(&args.scene);
-    let loaded = source::load_with_text(&args.scene)?;
-    let file = (!source::is_stdin(&args.scene)).then_some(args.scene.as_path());
-    RenderCommand::new(&name, file, loaded, &args.options).run()
+/// The file of a scene, which stdin has not.
+pub(crate) fn file(scene: &Path) -> Option<&Path> {
+    (!source::is_stdin(scene)).then_some(scene)
+}
+
+/// Renders a scene file, alone.
+pub(crate) fn one(scene: &Path, options: &RenderOptions) -> Result<Answer> {
+    start_threads(options);
+    let name = source::name(scene);
+    let loaded = source::load_with_text(scene)?;
+    let targets = Targets::new(options, file(scene))?;
+    RenderCommand::new((&name, file(scene)), loaded, targets, options, None).run()
 }
 
 /// Renders the scene on stdin, as the notes' program does: lists the model on stderr, writes the picture to stdout.
@@ -89,9 +129,10 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
     let Some(loaded) = source::load_stdin()? else {
         return Ok(Answer::Nothing);
     };
-    let command = RenderCommand::new(source::STDIN, None, loaded, options);
+    let targets = Targets::new(options, None)?;
+    let command = RenderCommand::new((source::STDIN, None), loaded, targets, options, None);
     // What is refused is refused before the listing, which may be long.
-    command.check(&command.target()?)?;
+    command.check(&command.targets.picture)?;
     if command.talks() {
         let mut listing = Vec::new();
         list_model(&command.scene, &mut listing).context("cannot list the model")?;
@@ -102,7 +143,7 @@ pub(crate) fn filter(options: &RenderOptions) -> Result<Answer> {
 
 /// Starts as many threads as were asked for, which the scene is read with and the picture compressed. If the system
 /// refuses they are done without, and the rendering tells it.
-fn start_threads(options: &RenderOptions) {
+pub(crate) fn start_threads(options: &RenderOptions) {
     if options.threads.is_some() {
         let _ = cores::start(options.threads);
     }
@@ -116,19 +157,22 @@ fn devices() -> &'static Devices {
 }
 
 impl<'a> RenderCommand<'a> {
-    fn new(
-        name: &'a str,
-        file: Option<&'a Path>,
+    pub(crate) fn new(
+        (name, file): (&'a str, Option<&'a Path>),
         (mut scene, text): (Scene, Vec<u8>),
+        targets: Targets,
         options: &'a RenderOptions,
+        place: Option<&'a Place<'a>>,
     ) -> Self {
         options.picture.apply(&mut scene);
         let mut command = Self {
             name,
             file,
+            targets,
             scene,
             remarks: Vec::new(),
             options,
+            place,
         };
         // Now, so that the text need not be kept.
         if command.talks() {
@@ -138,32 +182,17 @@ impl<'a> RenderCommand<'a> {
         command
     }
 
-    /// Whether stderr is for talk: not if silence was asked for, nor if the report is the only thing to be there.
+    /// Whether stderr is for talk.
     fn talks(&self) -> bool {
-        let report_on_stderr =
-            self.options.json && self.target().is_ok_and(|target| target.is_stdout());
-        !self.options.quiet && !report_on_stderr
+        self.options.talks(&self.targets.picture)
     }
 
-    /// Where the picture goes.
-    fn target(&self) -> Result<Target> {
-        if let Some(output) = &self.options.output {
-            return Ok(Target::from_argument(output.as_os_str()));
+    /// Says something of the scene, by its name if there are others.
+    fn note(&self, text: &str) {
+        match self.place {
+            Some(_) => say::note(&format!("{}: {text}", self.name)),
+            None => say::note(text),
         }
-        let Some(file) = self.file else {
-            return Ok(Target::Stdout);
-        };
-        let stem = file.file_stem().filter(|stem| !stem.is_empty());
-        let Some(stem) = stem.filter(|_| !is_stream(file)) else {
-            bail!(
-                "{} has no name to call the picture by: give one with -o",
-                file.display()
-            );
-        };
-        let mut name = stem.to_owned();
-        name.push(".ppm");
-        // A name such as `-.txt` must not turn into stdout.
-        Ok(Target::Path(Path::new("").join(name)))
     }
 
     /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
@@ -178,26 +207,18 @@ impl<'a> RenderCommand<'a> {
         Ok(())
     }
 
-    fn run(&self) -> Result<Answer> {
+    pub(crate) fn run(&self) -> Result<Answer> {
         let start = Instant::now();
-        let target = self.target()?;
-        if let Target::Path(path) = &target
-            && path.is_dir()
-        {
-            bail!(
-                "cannot write {}: it is a folder; name the file too, such as picture.ppm",
-                path.display()
-            );
-        }
+        let target = &self.targets.picture;
         let format = target.format()?;
         let settings = self.options.settings(&self.scene, format.wants_values())?;
-        self.check(&target)?;
-        let mut outputs = self.open(&target, format, &settings)?;
+        self.check(target)?;
+        let mut outputs = self.open(target, format, &settings)?;
         let rendered = match self.render(&settings, &mut outputs) {
             // What is written beside can be begun anew; what was written through cannot be taken back.
             Err(render::Error::Revoked(revoked)) if outputs.can_restart() => {
                 drop(outputs);
-                outputs = self.open(&target, format, &settings)?;
+                outputs = self.open(target, format, &settings)?;
                 let cpu = Settings {
                     backend: Backend::Cpu,
                     ..settings.clone()
@@ -209,6 +230,9 @@ impl<'a> RenderCommand<'a> {
             }
             rendered => rendered,
         };
+        if rendered.is_err() && !outputs.can_restart() {
+            self.place.into_iter().for_each(Place::cut_off);
+        }
         let report = match rendered {
             Ok(report) => report,
             Err(render::Error::Emit(source)) => return Err(outputs.failed(source)),
@@ -216,13 +240,13 @@ impl<'a> RenderCommand<'a> {
         };
         let finished = outputs.finish()?;
         if self.talks() {
-            self.remarks.iter().for_each(|remark| say::note(remark));
-            told(&report).iter().for_each(|line| say::note(line));
+            self.remarks.iter().for_each(|remark| self.note(remark));
+            told(&report).iter().for_each(|line| self.note(line));
         }
         self.list(&settings, &report)?;
-        self.report(&target, format, &report, &finished)?;
+        self.report(target, format, &report, &finished)?;
         if self.talks() && !self.options.json {
-            let summary = summary(&target, &report, start.elapsed());
+            let summary = summary(target, &report, start.elapsed());
             say::talk(&format!("{}\n", visible_text(&summary)));
         }
         Ok(answer(self.options.strict, &report))
@@ -244,43 +268,49 @@ impl<'a> RenderCommand<'a> {
         Ok(Outputs {
             picture: open(target, format, self.options.json)?,
             verdicts: match self.verdicts(target)? {
-                Some((target, format)) => Some(open(&target, format, false)?),
+                Some((target, format)) => Some(open(target, format, false)?),
                 None => None,
             },
         })
     }
 
     /// Where the verdicts go.
-    fn verdicts(&self, picture: &Target) -> Result<Option<(Target, Format)>> {
-        let Some(path) = &self.options.verdicts else {
+    fn verdicts(&self, picture: &Target) -> Result<Option<(&Target, Format)>> {
+        let Some(target) = &self.targets.verdicts else {
             return Ok(None);
         };
-        let target = Target::from_argument(path.as_os_str());
-        let format = picture::bytes_format(&target, "--verdicts")?;
+        let format = picture::bytes_format(target, "--verdicts")?;
         if target.is_stdout() {
             bail!("--verdicts goes to a file: give it a name that ends in .png or .ppm");
         }
-        if picture.is_same(&target) {
-            bail!(
-                "{} is the picture itself: give the verdicts another name",
-                path.display()
-            );
+        if picture.is_same(target) {
+            bail!("{target} is the picture itself: give the verdicts another name");
         }
-        self.check(&target)?;
+        self.check(target)?;
         Ok(Some((target, format)))
     }
 
     fn render(&self, settings: &Settings, outputs: &mut Outputs) -> Result<Report, render::Error> {
         let [_, height] = self.scene.camera.pixeldim;
         let rows = settings.rows_of(height);
-        let mut progress = Progress::new(rows.len() as u64, self.talks());
-        let rendered = render::render_with(&self.scene, settings, devices(), &mut |band| {
+        let Some(place) = self.place else {
+            let mut progress = Progress::new(rows.len() as u64, self.talks());
+            let emit = &mut |band: &Band| {
+                outputs.write(band)?;
+                progress.add(band.rows.len() as u64);
+                Ok(())
+            };
+            let rendered = render::render_with(&self.scene, settings, devices(), emit);
+            progress.clear();
+            return rendered;
+        };
+        let emit = &mut |band: &Band| {
+            place.wait_to_write()?;
             outputs.write(band)?;
-            progress.add(band.rows.len() as u64);
+            place.wrote(band.rows.start - rows.start, rows.len() as u32);
             Ok(())
-        });
-        progress.clear();
-        rendered
+        };
+        render::render_in_turn(&self.scene, settings, devices(), place.turn(), emit)
     }
 
     /// What the picture's file tells of how it was made.
@@ -359,7 +389,10 @@ impl<'a> RenderCommand<'a> {
             sha256: finished.sha256.as_deref().unwrap_or_default(),
             report,
         };
-        let text = serde_json::to_string_pretty(&json)? + "\n";
+        let text = match self.place {
+            Some(_) => serde_json::to_string(&json)?,
+            None => serde_json::to_string_pretty(&json)?,
+        } + "\n";
         if target.is_stdout() {
             say::talk(&text);
             return Ok(());

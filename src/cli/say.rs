@@ -11,6 +11,7 @@ use plumb::image::{OutputError, ReadError};
 use plumb::scene::LoadError;
 
 use super::inherited::check_stdout;
+use super::progress;
 
 /// A pipe whose reader went away: no failure, the reader has seen enough.
 #[derive(Debug)]
@@ -39,7 +40,7 @@ pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
 
 /// Writes data to stdout; a reader that went away is no failure, so that an answer keeps its exit code.
 pub(crate) fn data(text: &str) -> Result<()> {
-    stream(|to| to.write_all(text.as_bytes()))
+    progress::aside(|| stream(|to| to.write_all(text.as_bytes())))
 }
 
 /// Lets `write` write data to stdout, however much, under the rules of [`data`].
@@ -59,7 +60,7 @@ pub(crate) fn stream(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Re
 /// Prints text to stderr as it is.
 pub(crate) fn talk(text: &str) {
     // There is nowhere to say that stderr is closed.
-    let _ = io::stderr().lock().write_all(text.as_bytes());
+    let _ = progress::aside(|| io::stderr().lock().write_all(text.as_bytes()));
 }
 
 /// Prints text to stderr that begins with the program's name. Names in it may hold anything; lines are those of

@@ -164,10 +164,7 @@ fn shadow<R: Real>(
         light: Some(light),
         through: scene.any_transparent,
     };
-    let reach = match &range.light {
-        Some(light) if world.has_tree() => at_most(light.distance),
-        _ => f64::INFINITY,
-    };
+    let reach = at_most(light.distance);
     let opaque = |object: usize| !scene.palette[scene.materials[object]].transparent;
     let mut hits = Vec::new();
     let mut dark = None;

@@ -1,7 +1,7 @@
 //! A pixel in the number types that it takes to be sure of it; `sample` makes it in one of them.
 //!
-//! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, then numbers that
-//! are exact in the end.
+//! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, pairs of f64, then
+//! numbers that are exact in the end.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -13,13 +13,14 @@ use glam::DVec3;
 use super::camera::{camera_getdir, camera_setpix, inverse_distance};
 use super::hit_point::hit_point;
 use super::sample::{Value, color, make_pixel, mean};
-use super::trace::{Fault, Limits, find_closest_object};
+use super::surface::getamb;
+use super::trace::{Fault, Limits, find_closest_object, locate};
 use crate::frame::{Decided, DecidedBy, Part, PixelFault};
 use crate::jitter::Sampling;
 use crate::prepare::on_demand::OnDemandSources;
 use crate::prepare::{Prepared, ViewParameters};
 use crate::real::rational::two_to;
-use crate::real::{Bounded, Effort, Lazy, Mark, Real, Undecided, V3};
+use crate::real::{Bounded, Effort, Lazy, Mark, Pair, Real, Undecided, V3};
 use crate::scene::Scene;
 
 /// What the ray through a place on the screen hits first.
@@ -73,6 +74,7 @@ pub struct ExactTracer<'a> {
     number: u64,
     bounded: Prepared<Bounded>,
     sources: OnceLock<OnDemandSources>,
+    pairs: OnceLock<Prepared<Pair>>,
     plain: OnceLock<Prepared<f64>>,
 }
 
@@ -101,6 +103,7 @@ impl<'a> ExactTracer<'a> {
             number: NUMBERS.fetch_add(1, Ordering::Relaxed),
             bounded: Prepared::new(scene, view),
             sources: OnceLock::new(),
+            pairs: OnceLock::new(),
             plain: OnceLock::new(),
         }
     }
@@ -154,7 +157,16 @@ impl<'a> ExactTracer<'a> {
             Err(Fault::TooManyRays) => return Err(fault),
             Err(Fault::Undecided) => {}
         }
-        if !matches!(sampling, Sampling::Once) {
+        if matches!(sampling, Sampling::Once) {
+            if self.pairs_may_tell(f64::from(x), f64::from(y)) {
+                let v = make_pixel(self.pairs(), limits, sampling, x, y);
+                match v.and_then(|v| Ok(self.decided(v, DecidedBy::Pairs)?)) {
+                    Ok(decided) => return Ok(decided),
+                    Err(Fault::TooManyRays) => return Err(fault),
+                    Err(Fault::Undecided) => {}
+                }
+            }
+        } else {
             // Only the samples that f64 leaves open are traced in exact numbers; their mean is taken in f64 with
             // bounds.
             let v = self.mean_bounded(limits, sampling, x, y, |_| true);
@@ -248,6 +260,16 @@ impl<'a> ExactTracer<'a> {
             color: V3::new(r, g, b),
             open,
         };
+        if self.pairs_may_tell(x, y) {
+            match color(self.pairs(), limits, x, y) {
+                Err(Fault::Undecided) => {}
+                decided => {
+                    let Value { color, open } = decided?;
+                    let enclosures = [color.x, color.y, color.z].map(Real::enclosure);
+                    return Ok((value(enclosures, open), DecidedBy::Pairs));
+                }
+            }
+        }
         let exact = self.exactly(|scene| {
             let Value { color, open } = color(scene, limits, x, y)?;
             Ok(value([color.x, color.y, color.z].map(Lazy::bounded), open))
@@ -265,6 +287,28 @@ impl<'a> ExactTracer<'a> {
             }
             (v, by) => Ok((v?, by)),
         }
+    }
+
+    /// Whether what f64 leaves open there may be told by more digits: not where two numbers are equal, as most are that
+    /// f64 does not tell apart at the first hit. What lies behind that is of lit scenes.
+    fn pairs_may_tell(&self, x: f64, y: f64) -> bool {
+        let scene = &self.bounded;
+        let ray = camera_getdir(&scene.camera, x, y);
+        scene.world.is_some()
+            && find_closest_object(scene, &ray).is_ok_and(|hit| {
+                hit.is_none_or(|hit| getamb(scene, &locate(scene, &ray, &hit)).is_ok())
+            })
+    }
+
+    /// The scene in pairs of f64.
+    fn pairs(&self) -> &Prepared<Pair> {
+        self.pairs
+            .get_or_init(|| Prepared::again(self.scene, self.view, &self.bounded, self.sources()))
+    }
+
+    fn sources(&self) -> &OnDemandSources {
+        self.sources
+            .get_or_init(|| self.bounded.sources(self.scene, self.view))
     }
 
     /// Pixel (x, y) in exact numbers. If its bytes hang on rays that are too faint to be followed, then more are.
@@ -305,9 +349,7 @@ impl<'a> ExactTracer<'a> {
             Some((Rc::clone(&found.prepared), found.end))
         });
         let (prepared, end) = found.unwrap_or_else(|| {
-            let sources = self
-                .sources
-                .get_or_init(|| self.bounded.sources(self.scene, self.view));
+            let sources = self.sources();
             Lazy::clear();
             let prepared = Prepared::again(self.scene, self.view, &self.bounded, sources);
             let (prepared, end) = (Rc::new(prepared), Lazy::mark());

@@ -3,14 +3,19 @@
 use std::cmp::Ordering;
 
 use super::camera::Ray;
+use crate::prepare::boxes::SLACK;
 use crate::prepare::extent::Extent;
 use crate::prepare::plane::Sides;
 use crate::prepare::{Plane, WorldPlane};
-use crate::real::{Real, Undecided, V3};
+use crate::real::{Bounded, Real, Undecided, V3};
 
-/// 1/s of the hit on the plane, or None for a miss.
+/// 1/s of the hit on the plane, or None for a miss, and where that is surely below `least`.
 #[inline]
-pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, Undecided> {
+pub fn plane_hits<R: Real>(
+    plane: &Plane<R>,
+    ray: &Ray<R>,
+    least: f64,
+) -> Result<Option<R>, Undecided> {
     if let Some(front) = &plane.front {
         let [x, y] = ray.pixel;
         let side = front[0].times(x) + front[1].times(y) + front[2];
@@ -21,6 +26,10 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
     let along = |form: &[R; 3]| form[0] * ray.w.x + form[1] * ray.w.y + form[2];
     let inverse = along(&plane.inverse);
     if !inverse.positive()? {
+        return Ok(None);
+    }
+    let Bounded { value, error } = inverse.quick_enclosure();
+    if value + error * Bounded::GROW < least {
         return Ok(None);
     }
     match &plane.sides {
@@ -45,12 +54,14 @@ pub fn plane_hits<R: Real>(plane: &Plane<R>, ray: &Ray<R>) -> Result<Option<R>, 
     Ok(Some(inverse))
 }
 
-/// t of the hit on the plane for a ray from anywhere, and its position; None for a miss. `highest` is the rule H.z ≤ τ.
+/// t of the hit on the plane for a ray from anywhere, and its position; None for a miss, and where that is surely
+/// farther than `reach`. `highest` is the rule H.z ≤ τ.
 pub fn plane_hits_from<R: Real>(
     plane: &WorldPlane<R>,
     base: V3<R>,
     dir: V3<R>,
     highest: R,
+    reach: f64,
 ) -> Result<Option<(R, V3<R>)>, Undecided> {
     let across = plane.direction.dot(dir);
     let facing = across.sign()?;
@@ -60,6 +71,12 @@ pub fn plane_hits_from<R: Real>(
     let away = plane.constant - plane.direction.dot(base);
     // t is their quotient, and > 0 where they have the same sign.
     if away.sign()? != facing {
+        return Ok(None);
+    }
+    let (least, most) = (away.quick_enclosure(), across.quick_enclosure());
+    let least = least.value.abs() - least.error * Bounded::GROW;
+    let most = most.value.abs() + most.error * Bounded::GROW;
+    if least > reach * most * SLACK {
         return Ok(None);
     }
     let t = away / across;

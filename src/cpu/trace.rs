@@ -34,12 +34,12 @@ pub fn find_closest_object<R: Real>(
     let mut closest: Option<Hit<R>> = None;
     for (index, plane) in scene.planes.iter().enumerate() {
         let mark = R::mark();
-        let hit = plane_hits(plane, ray)?.map(|inverse| Hit {
+        let hit = plane_hits(plane, ray, at_least(closest.as_ref()))?.map(|inverse| Hit {
             inverse,
             object: plane.object,
             index,
         });
-        if !takes(&mut closest, hit)? {
+        if !takes(scene, &mut closest, hit)? {
             R::release(mark);
         }
     }
@@ -50,7 +50,7 @@ pub fn find_closest_object<R: Real>(
             object: quadric.object,
             index,
         });
-        if !takes(&mut closest, hit)? {
+        if !takes(scene, &mut closest, hit)? {
             R::release(mark);
         }
     }
@@ -72,7 +72,7 @@ pub fn find_closest_object<R: Real>(
             object: sphere.object,
             index,
         });
-        if !takes(closest, hit)? {
+        if !takes(scene, closest, hit)? {
             R::release(mark);
         }
         Ok(())
@@ -80,12 +80,12 @@ pub fn find_closest_object<R: Real>(
     let triangle = |closest: &mut Option<Hit<R>>, index: usize| -> Result<(), Undecided> {
         let mark = R::mark();
         let triangle = scene.triangle(index).ok_or(Undecided)?;
-        let hit = plane_hits(&triangle, ray)?.map(|inverse| Hit {
+        let hit = plane_hits(&triangle, ray, at_least(closest.as_ref()))?.map(|inverse| Hit {
             inverse,
             object: triangle.object,
             index,
         });
-        if !takes(closest, hit)? {
+        if !takes(scene, closest, hit)? {
             R::release(mark);
         }
         Ok(())
@@ -99,10 +99,7 @@ pub fn find_closest_object<R: Real>(
     for &index in screen_grid.at(ray.pixel) {
         let index = index as usize;
         // The nearest come first: the others lie behind what is hit.
-        if closest
-            .as_ref()
-            .is_some_and(|hit| f64::from(screen_grid.max_inverse[index]) < at_least(hit.inverse))
-        {
+        if f64::from(screen_grid.max_inverse[index]) < at_least(closest.as_ref()) {
             break;
         }
         match index.checked_sub(scene.sphere_count()) {
@@ -113,20 +110,31 @@ pub fn find_closest_object<R: Real>(
     Ok(closest)
 }
 
-/// The least f64 that a number may be.
-fn at_least<R: Real>(number: R) -> f64 {
-    let Bounded { value, error } = number.enclosure();
-    value - (error + value.abs() * f64::EPSILON) * Bounded::GROW
+/// What 1/s of a hit has to be for it to matter beside the closest.
+#[inline]
+fn at_least<R: Real>(closest: Option<&Hit<R>>) -> f64 {
+    closest.map_or(f64::NEG_INFINITY, |hit| {
+        let Bounded { value, error } = hit.inverse.quick_enclosure();
+        value - (error + value.abs() * f64::EPSILON) * Bounded::GROW
+    })
 }
 
 /// Takes `hit`, if there is one, where it is nearer than `closest`, or as near and first in the file. Whether it did.
 #[inline]
-fn takes<R: Real>(closest: &mut Option<Hit<R>>, hit: Option<Hit<R>>) -> Result<bool, Undecided> {
+fn takes<R: Real>(
+    scene: &Prepared<R>,
+    closest: &mut Option<Hit<R>>,
+    hit: Option<Hit<R>>,
+) -> Result<bool, Undecided> {
     let Some(hit) = hit else {
         return Ok(false);
     };
     let takes = match closest {
         None => true,
+        // Surfaces that coincide are met at the same place: a tie all over, which no digits tell.
+        Some(best) if scene.groups[best.object] == scene.groups[hit.object] => {
+            hit.object < best.object
+        }
         Some(best) => {
             let difference = hit.inverse - best.inverse;
             difference.positive()? || (hit.object < best.object && difference.non_negative()?)

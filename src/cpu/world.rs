@@ -1,10 +1,11 @@
 //! What a ray from anywhere meets first. Referee of `shaders/world.wgsl`.
 
-use super::bvh::{at_most, bvh_hits};
+use super::bvh::{BoxRay, at_most, bvh_hits};
 use super::plane::plane_hits_from;
 use super::quadric::{Start, quadric_hits_from};
 use super::sphere::sphere_hits_from;
 use super::surface::Point;
+use crate::prepare::boxes::{Bounds, SLACK};
 use crate::prepare::{World, WorldPlane};
 use crate::real::{Real, Undecided, V3};
 
@@ -47,7 +48,6 @@ pub fn closest_hit<R: Real>(
     range: &Range<R>,
 ) -> Result<Option<SecondaryHit<R>>, Undecided> {
     let mut closest: Option<SecondaryHit<R>> = None;
-    let tree = world.has_tree();
     hits_from(world, base, dir, range, &mut |hit| {
         let takes = match &closest {
             None => true,
@@ -64,10 +64,9 @@ pub fn closest_hit<R: Real>(
         if takes {
             closest = Some(hit);
         }
-        Ok(match &closest {
-            Some(best) if tree => at_most(best.t),
-            _ => f64::INFINITY,
-        })
+        Ok(closest
+            .as_ref()
+            .map_or(f64::INFINITY, |best| at_most(best.t)))
     })?;
     Ok(closest)
 }
@@ -81,15 +80,21 @@ pub fn hits_from<R: Real>(
     range: &Range<R>,
     take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<(), Undecided> {
-    let mut reach = planes_from(world, base, dir, range, take)?;
+    let passed_by = PassedBy::new(world, base, dir);
+    let mut reach = planes_from(world, base, dir, range, &passed_by, take)?;
     if reach >= 0.0 {
-        reach = quadrics_from(world, base, dir, range, reach, take)?;
+        reach = quadrics_from(world, base, dir, range, (&passed_by, reach), take)?;
     }
     if reach < 0.0 {
         return Ok(());
     }
     let before_spheres = reach;
+    let treated = world.sphere_tree.as_ref().map_or(0, |tree| tree.len);
     let mut sphere = |index: usize| -> Result<f64, Undecided> {
+        let loose = index.checked_sub(treated);
+        if loose.is_some_and(|loose| passed_by.any(&world.boxes.spheres, loose, reach)) {
+            return Ok(reach);
+        }
         let mark = R::mark();
         if reach >= 0.0
             && let Some(hit) = sphere_from(world, index, base, dir, range)?
@@ -100,10 +105,8 @@ pub fn hits_from<R: Real>(
         }
         Ok(reach)
     };
-    let mut treated = 0;
     if let Some(bvh) = &world.sphere_tree {
         bvh_hits(bvh, base, dir, before_spheres, &mut sphere)?;
-        treated = bvh.len;
     }
     for index in treated..world.sphere_count() {
         sphere(index)?;
@@ -118,7 +121,7 @@ pub fn hits_from<R: Real>(
                 return Err(Undecided);
             };
             if reach >= 0.0
-                && let Some(hit) = plane_from(world, &plane, base, dir, range)?
+                && let Some(hit) = plane_from(world, &plane, base, dir, range, reach)?
             {
                 reach = take(hit)?;
             } else {
@@ -136,15 +139,17 @@ fn planes_from<R: Real>(
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
+    passed_by: &PassedBy,
     take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<f64, Undecided> {
-    let mut reach = match &range.light {
-        Some(light) if world.has_tree() => at_most(light.distance),
-        _ => f64::INFINITY,
-    };
-    for plane in &world.planes[..world.loose_planes()] {
+    let light = range.light.as_ref();
+    let mut reach = light.map_or(f64::INFINITY, |light| at_most(light.distance));
+    for (place, plane) in world.planes[..world.loose_planes()].iter().enumerate() {
+        if passed_by.any(&world.boxes.planes, place, reach) {
+            continue;
+        }
         let mark = R::mark();
-        match plane_from(world, plane, base, dir, range)? {
+        match plane_from(world, plane, base, dir, range, reach)? {
             Some(hit) => {
                 reach = take(hit)?;
                 if reach < 0.0 {
@@ -163,10 +168,13 @@ fn quadrics_from<R: Real>(
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
-    mut reach: f64,
+    (passed_by, mut reach): (&PassedBy, f64),
     take: &mut impl FnMut(SecondaryHit<R>) -> Result<f64, Undecided>,
 ) -> Result<f64, Undecided> {
-    for quadric in world.quadrics.iter() {
+    for (place, quadric) in world.quadrics.iter().enumerate() {
+        if passed_by.any(&world.boxes.quadrics, place, reach) {
+            continue;
+        }
         let left_from = range.skip == Some(world.groups[quadric.object]);
         if left_from && !range.through {
             continue;
@@ -207,18 +215,44 @@ fn quadrics_from<R: Real>(
     Ok(reach)
 }
 
-/// The hit of the plane, if it is in range.
+/// Which boxes a ray passes by.
+struct PassedBy(Option<BoxRay>);
+
+impl PassedBy {
+    #[inline]
+    fn new<R: Real>(world: &World<R>, base: V3<R>, dir: V3<R>) -> Self {
+        let size = world.boxes.size;
+        let enclosures = |v: V3<R>| [v.x, v.y, v.z].map(Real::quick_enclosure);
+        Self(if size > 0.0 {
+            BoxRay::new(enclosures(base), enclosures(dir), size)
+        } else {
+            None
+        })
+    }
+
+    /// Whether the ray surely meets nothing in the box of this place up to `reach`.
+    #[inline(always)]
+    fn any(&self, boxes: &[Option<Bounds>], place: usize, reach: f64) -> bool {
+        let (Some(ray), Some(Some(bounds))) = (&self.0, boxes.get(place)) else {
+            return false;
+        };
+        ray.enters(bounds).is_none_or(|near| near > reach * SLACK)
+    }
+}
+
+/// The hit of the plane, if it is in range and not surely farther than `reach`.
 fn plane_from<R: Real>(
     world: &World<R>,
     plane: &WorldPlane<R>,
     base: V3<R>,
     dir: V3<R>,
     range: &Range<R>,
+    reach: f64,
 ) -> Result<Option<SecondaryHit<R>>, Undecided> {
     if range.skip == Some(world.groups[plane.object]) || range.ends_on(&plane.lights_on_surface) {
         return Ok(None);
     }
-    let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest)? else {
+    let Some((t, position)) = plane_hits_from(plane, base, dir, world.highest, reach)? else {
         return Ok(None);
     };
     if !range.reaches(t)? {

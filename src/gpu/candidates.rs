@@ -1,5 +1,6 @@
 //! Which adapters may make a picture together, and whether it is worth loading a driver to ask.
 
+use std::collections::HashSet;
 use std::fs;
 
 use super::GpuError;
@@ -32,7 +33,9 @@ pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, Gp
         let is_usable = |adapter: &&wgpu::Adapter| {
             !is_software(&adapter.get_info()) && problem(adapter).is_none()
         };
-        let hardware: Vec<_> = all.iter().filter(is_usable).cloned().collect();
+        let mut hardware: Vec<_> = all.iter().filter(is_usable).cloned().collect();
+        let mut seen = HashSet::new();
+        hardware.retain(|adapter| card(&adapter.get_info()).is_none_or(|card| seen.insert(card)));
         if !hardware.is_empty() {
             return Ok(Candidates::Adapters(hardware));
         }
@@ -42,6 +45,12 @@ pub fn candidates(wanted: Option<&str>, software: bool) -> Result<Candidates, Gp
         return Ok(Candidates::Software(first.get_info().name));
     }
     Ok(Candidates::Adapters(vec![first.clone()]))
+}
+
+/// What is the same for a card that two drivers list, and for no two cards: where it is plugged in, where that is told.
+fn card(info: &wgpu::AdapterInfo) -> Option<(u32, u32, String)> {
+    let bus = &info.device_pci_bus_id;
+    (!bus.is_empty()).then(|| (info.vendor, info.device, bus.clone()))
 }
 
 /// Whether there may be an adapter that is no software, as far as can be told without loading a driver: on Linux GPUs
@@ -60,4 +69,25 @@ pub fn may_be_hardware() -> bool {
         entries.any(|entry| is_gpu(&entry.file_name().to_string_lossy()))
     };
     holds("/dev/dri", &|name| name.starts_with("renderD")) || holds("/dev", &is_gpu)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_card_is_one_whatever_its_drivers_are_called() {
+        let info = |driver: &str, bus: &str| {
+            let mut info =
+                wgpu::AdapterInfo::new(wgpu::DeviceType::DiscreteGpu, wgpu::Backend::Vulkan);
+            info.driver = driver.into();
+            info.device_pci_bus_id = bus.into();
+            info
+        };
+        let [a, b] = ["0000:01:00.0", "0000:02:00.0"];
+        assert_eq!(card(&info("one", a)), card(&info("another", a)));
+        assert_ne!(card(&info("one", a)), card(&info("one", b)));
+        // Two that do not tell may be two of a kind.
+        assert_eq!(card(&info("one", "")), None);
+    }
 }

@@ -9,7 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{Format, OutputError};
-use crate::files::is_same_file;
+use crate::files::{Identity, identity, is_same_file};
 
 /// Links followed before they are called a loop, as Linux does.
 const MAX_LINKS: usize = 40;
@@ -60,6 +60,22 @@ impl Target {
             Ok(Found::Special) | Err(_) => None,
         };
         a == b || is_same_file(a, b) || matches!((end(a), end(b)), (Some(a), Some(b)) if a == b)
+    }
+
+    /// What tells the file that is written from all others, whether it is there or to come; none for a stream, which
+    /// may take one picture after the other.
+    ///
+    /// # Errors
+    /// If it cannot be written: it is a folder, or lies in one that is missing.
+    pub fn identity(&self) -> Result<Option<Identity>, OutputError> {
+        if self.is_stdout() {
+            return Ok(None);
+        }
+        Ok(match find(self.path())? {
+            Found::Nothing(end) => Some(Identity::Name(end)),
+            Found::File(end, _) => identity(&end),
+            Found::Special => None,
+        })
     }
 
     /// A name of it; stdout has one on most systems, which leads to the file that it was redirected to.

@@ -10,6 +10,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
+use super::boxes::Bounds;
 use super::world_sphere::WorldSphere;
 use crate::real::Real;
 
@@ -56,9 +57,6 @@ const PAD: f64 = 1.0 / 524_288.0;
 /// Coordinates beyond this would overflow an f32 when areas are compared; such spheres and triangles stay outside the
 /// tree.
 const REACH: f64 = 1e17;
-
-/// A slab test in f64 errs by a few 2⁻⁵³ of its distances.
-pub const SLACK: f64 = 1.0 + 1e-12;
 
 struct Boxed(Aabb);
 
@@ -156,19 +154,13 @@ fn depth(nodes: &[Node]) -> usize {
 }
 
 impl Node {
-    /// Where the ray from a base along w enters the box, in units of w; None if it does not. `inverse` is 1/w by
-    /// components, and the base lies between `high` and `low`: the box is widened by their difference. The slack covers
-    /// the roundings of the test itself, which are relative.
-    pub fn enters(&self, low: [f64; 3], high: [f64; 3], inverse: [f64; 3]) -> Option<f64> {
-        let mut near = 0.0_f64;
-        let mut far = f64::INFINITY;
-        for i in 0..3 {
-            let a = (f64::from(self.min[i]) - low[i]) * inverse[i];
-            let b = (f64::from(self.max[i]) - high[i]) * inverse[i];
-            near = near.max(a.min(b));
-            far = far.min(a.max(b));
+    /// Its box.
+    #[inline(always)]
+    pub fn bounds(&self) -> Bounds {
+        Bounds {
+            min: self.min.map(f64::from),
+            max: self.max.map(f64::from),
         }
-        (near <= far * SLACK).then_some(near)
     }
 }
 

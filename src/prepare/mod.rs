@@ -9,6 +9,7 @@
 //! - **What is linear in the pixel stays linear**: the inverse 1/s of the ray parameter of a plane, the offset from a
 //!   sphere's projected center, the z > τ rule. No 10000 and no 1000 of the tile rules ever meets an f32.
 
+pub mod boxes;
 pub mod brightest;
 pub mod bvh;
 pub mod camera;

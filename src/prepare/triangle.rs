@@ -158,7 +158,8 @@ impl<R: Real> Plane<R> {
 }
 
 /// The vertices, from the viewpoint in units of 2^scale.
-fn corners<R: Real>(triangle: &Triangle, viewpoint: DVec3, scale: i32) -> [V3<R>; 3] {
+/// Its vertices, from the viewpoint in units of 2^scale.
+pub(super) fn corners<R: Real>(triangle: &Triangle, viewpoint: DVec3, scale: i32) -> [V3<R>; 3] {
     let unit = R::exact(two_to(-scale));
     let corner = |vertex| (V3::exact(vertex) - V3::exact(viewpoint)) * unit;
     triangle.vertices.map(corner)

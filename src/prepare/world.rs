@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::boxes::Boxes;
 use super::brightest::Brightest;
 use super::bvh::{self, Bvh};
 use super::extent::Extent;
@@ -38,6 +39,8 @@ pub struct World<R> {
     pub triangle_tree: Option<Arc<Bvh>>,
     /// The objects that are in it, in its order.
     tree_objects: Arc<Vec<usize>>,
+    /// Around what no tree holds; spheres count from the tree's on.
+    pub boxes: Arc<Boxes>,
     /// What spheres and triangles are made from that are not in `spheres` and `planes`.
     pub on_demand: Option<OnDemandShapes>,
     /// The lights, in file order.
@@ -81,6 +84,14 @@ impl<R: Real> World<R> {
         world.triangle_tree = triangle_tree.map(Arc::new);
         world.quadrics = Arc::clone(quadrics);
         world.sphere_tree = bvh::build(&mut world.spheres).map(Arc::new);
+        let loose = world.sphere_tree.as_ref().map_or(0, |tree| tree.len);
+        world.boxes = Arc::new(Boxes::new(
+            scene,
+            scale,
+            &world.planes[..world.loose_planes()],
+            quadrics,
+            &world.spheres[loose..],
+        ));
         let mut places = vec![0; scene.objects.len()];
         for (place, plane) in world.planes.iter().enumerate() {
             places[plane.object] = place;
@@ -112,6 +123,7 @@ impl<R: Real> World<R> {
             quadrics: Arc::clone(quadrics),
             sphere_tree: before.sphere_tree.clone(),
             triangle_tree: before.triangle_tree.clone(),
+            boxes: Arc::clone(&before.boxes),
             on_demand: on_demand.cloned(),
             brightest: Arc::clone(&before.brightest),
             picture_planes: Arc::clone(&before.picture_planes),
@@ -148,6 +160,7 @@ impl<R: Real> World<R> {
             quadrics: Arc::default(),
             sphere_tree: None,
             triangle_tree: None,
+            boxes: Arc::default(),
             tree_objects: Arc::clone(&tree_objects),
             on_demand: None,
             lights: scene

@@ -32,9 +32,11 @@ fn entry(ui: &mut Ui, by: DecidedBy) {
         .rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
     let dimmed = match by {
         DecidedBy::Gpu | DecidedBy::Single => " (the picture, dimmed)",
-        DecidedBy::Bounded | DecidedBy::Multiprecision | DecidedBy::Exact | DecidedBy::Presumed => {
-            ""
-        }
+        DecidedBy::Bounded
+        | DecidedBy::Pairs
+        | DecidedBy::Multiprecision
+        | DecidedBy::Exact
+        | DecidedBy::Presumed => "",
     };
     let text = format!("{}{dimmed}", meaning(by));
     ui.add(egui::Label::new(RichText::new(text).small()).extend());

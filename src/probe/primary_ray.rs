@@ -125,7 +125,7 @@ impl<'a> PrimaryRay<'a> {
         let mut hits = vec![None; self.scene.objects.len()];
         let planes = self.prepared.planes.iter().enumerate();
         for (index, plane) in planes.chain(self.prepared.triangles.iter().enumerate()) {
-            let inverse = plane_hits(plane, &self.ray)?;
+            let inverse = plane_hits(plane, &self.ray, f64::NEG_INFINITY)?;
             hits[plane.object] = inverse.map(|inverse| Hit {
                 inverse,
                 object: plane.object,

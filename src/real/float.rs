@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::rational::Ratio;
-use super::{Real, Undecided};
+use super::{Bounded, Real, Undecided};
 
 impl Real for f64 {
     #[inline]
@@ -82,8 +82,38 @@ pub(super) fn whole_below(value: f64) -> f64 {
     }
 }
 
+/// The f32 nearest to a number, of two the even one, where its enclosure need not tell: next to the middle between two
+/// of them its side of the middle decides.
+pub(super) fn nearest_f32_by_middle<R: Real>(
+    number: R,
+    enclosure: Bounded,
+) -> Result<f32, Undecided> {
+    if let Ok(value) = enclosure.nearest_f32() {
+        return Ok(value);
+    }
+    let margin = enclosure.error * Bounded::GROW;
+    let (low, high) = (
+        (enclosure.value - margin).next_down() as f32,
+        (enclosure.value + margin).next_up() as f32,
+    );
+    let (low, high) = if low < high {
+        (low, high)
+    } else {
+        (low.next_down(), low)
+    };
+    if high != low.next_up() {
+        return Err(Undecided);
+    }
+    let middle = middle(low, high);
+    Ok(match (number - R::exact(middle)).sign()? {
+        Ordering::Less => low,
+        Ordering::Greater => high,
+        Ordering::Equal => middle as f32,
+    })
+}
+
 /// The number halfway between two neighbouring f32, the second of which may be infinite.
-pub(super) fn middle(low: f32, high: f32) -> f64 {
+fn middle(low: f32, high: f32) -> f64 {
     // Where f32 ends, the next step is as wide as the last.
     let wide = |x: f32| {
         if x.is_infinite() {

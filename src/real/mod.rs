@@ -1,8 +1,8 @@
 //! The number types that the tracer runs on.
 //!
 //! `cpu` is written once, over [`Real`]. A number type says what it knows: a comparison that it cannot decide is
-//! [`Undecided`], never a guess. [`Bounded`] is f64 that knows its error, and decides nearly every pixel; [`Lazy`]
-//! decides the others, in the end exactly. Plain f64 decides always, and is wrong where its rounding crosses the
+//! [`Undecided`], never a guess. [`Bounded`] is f64 that knows its error, and decides nearly every pixel; [`Pair`] has
+//! twice the digits; [`Lazy`] decides the others, in the end exactly. Plain f64 decides always, and is wrong where its rounding crosses the
 //! border: it is for people to read, and for what nothing else decides.
 //!
 //! [`rational`] stands below them all: the arithmetic that `prepare` takes a scene's facts from.
@@ -10,11 +10,13 @@
 mod bounded;
 mod float;
 mod lazy;
+mod pair;
 pub mod rational;
 mod vec3;
 
 pub use bounded::Bounded;
 pub use lazy::{Effort, Lazy, Mark};
+pub use pair::Pair;
 pub use vec3::V3;
 
 use std::cmp::Ordering;

@@ -136,14 +136,20 @@ impl Bag {
         }
     }
 
-    /// A worker that uses the same cores is getting ready, or will not come.
-    pub(super) fn expect(&self, expected: bool) {
+    /// A worker that uses the same cores is getting ready, while the others work on this part of them; or it will not
+    /// come.
+    pub(super) fn expect(&self, expected: Option<f64>) {
         self.change(|state| state.expected = expected);
     }
 
     /// Whether one is.
     pub(super) fn is_warming(&self) -> bool {
         self.lock().is_warming()
+    }
+
+    /// Whether all rows are made, whether they went out or not.
+    pub(super) fn is_made(&self) -> bool {
+        self.lock().is_made()
     }
 
     /// Whether no other worker makes bands, or may make some.

@@ -12,13 +12,16 @@ use crate::stopwatch::{Phase, Stopwatch};
 /// Most pixels of a band, as of one that a device is given.
 const MOST: u32 = 2 << 20;
 
+/// Pixels of the first band, when nobody knows yet how long they take.
+const FIRST: u32 = 8192;
+
 /// Makes bands until there are none left to make.
 pub(super) fn run(rendering: &Rendering<'_>, me: usize) {
     let bag = &rendering.bag;
     let mut watch = Stopwatch::start();
     let most = (MOST / rendering.width).max(1);
     let fixed = rendering.settings.band_rows.map(|rows| rows.clamp(1, most));
-    let mut height = fixed.unwrap_or(16).min(most);
+    let mut height = fixed.unwrap_or(FIRST.div_ceil(rendering.width)).min(most);
     while let Taken::Rows(rows) = bag.take(me, height, u32::MAX, true) {
         watch.lap(Phase::Held);
         let lanes = rendering.lanes();

@@ -12,8 +12,8 @@ use super::device_worker::{DeviceWorker, Here};
 use super::devices::{Devices, Found, Wanted};
 use super::rendering::Rendering;
 
-/// Loading a software driver and compiling a shader there takes about so long: what the CPU has done before then is not
-/// worth it.
+/// What the CPU has done in this time it does alone: loading a software driver and compiling a shader there takes about
+/// so long, and a core.
 const STARTING: Duration = Duration::from_millis(100);
 
 /// Who wants to hear that a rendering is over.
@@ -106,6 +106,12 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
         self.spawn("device", move || worker.run(&here, sender, &news));
     }
 
+    /// Whether the CPU takes so long that a driver which uses the same cores may be quicker: by pixels from all over the
+    /// picture, which tells at once, or in the end by bands. False if the rendering ends before that is known.
+    fn lasts(self) -> bool {
+        self.rendering.seems_to_take() > STARTING || self.rendering.bag.lasts(STARTING)
+    }
+
     /// Waits for devices while the CPU works already, and lets them work.
     pub(super) fn late(
         self,
@@ -117,11 +123,14 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
         let settings = self.rendering.settings;
         let bag = &self.rendering.bag;
         let ask_for_software = || {
-            bag.expect(true);
-            devices.ask(Wanted::new(settings, true), sender.clone());
+            bag.expect(Some(self.rendering.share_of_fewer_threads()));
+            devices.ask(
+                Wanted::new(settings, true),
+                News::of_devices(sender.clone()),
+            );
         };
         if !asked {
-            if self.rendering.is_quick_on_cpu() || !bag.lasts(STARTING) {
+            if self.rendering.is_quick_on_cpu() || !self.lasts() {
                 return;
             }
             ask_for_software();
@@ -153,7 +162,7 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
                                 );
                             }
                             Err(error) => {
-                                bag.expect(false);
+                                bag.expect(None);
                                 self.rendering.tell(|told| {
                                     told.left.push(format!("{error}; the CPU renders"))
                                 });
@@ -166,10 +175,10 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
                     self.rendering.tell(|told| told.left_out = Some(name));
                     return;
                 }
-                Found::Software(_) if !bag.lasts(STARTING) => return,
+                Found::Software(_) if !self.lasts() => return,
                 Found::Software(_) => ask_for_software(),
                 // That there is none is nothing to talk about: the CPU makes the same picture.
-                Found::None(_) => return bag.expect(false),
+                Found::None(_) => return bag.expect(None),
             }
         }
     }

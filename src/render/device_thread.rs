@@ -41,6 +41,14 @@ pub(super) enum News {
     Over,
 }
 
+impl News {
+    /// Tells what came of asking for devices.
+    pub(super) fn of_devices(sender: Sender<Self>) -> impl Fn(Found) + Clone + Send + 'static {
+        // Nobody may listen any more.
+        move |found| drop(sender.send(Self::Found(found)))
+    }
+}
+
 /// What a device's thread did.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Spent {

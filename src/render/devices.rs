@@ -5,11 +5,9 @@
 
 use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
-use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 
-use super::device_thread::News;
 use crate::certify::trust;
 use crate::gpu::GpuError;
 use crate::gpu::adapters;
@@ -17,6 +15,9 @@ use crate::gpu::candidates::{Candidates, candidates};
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Compiled;
 use crate::settings::{Precision, Settings};
+use crate::shader::compose::{Entry, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::pack::Packed;
 use crate::stopwatch::{Phase, Phases, Stopwatch};
 
 /// A device that is open, and the shaders that it compiled lately.
@@ -98,20 +99,39 @@ impl Devices {
         self.given
     }
 
-    /// Asks for devices, and returns at once; `tell` hears what came of it.
-    pub(super) fn ask(&self, wanted: Wanted, tell: Sender<News>) {
+    /// Asks for devices, and returns at once; `tell` hears what came of it, on another thread as a rule.
+    pub(super) fn ask(&self, wanted: Wanted, tell: impl Fn(Found) + Clone + Send + 'static) {
         let (open, given) = (Arc::clone(&self.open), self.given);
         let told = tell.clone();
         let answer = move || {
             // Drivers panic now and then, and somebody waits for this.
             let found = panic::catch_unwind(AssertUnwindSafe(|| find(&open, given, &wanted)));
             let found = found.unwrap_or(Found::None(GpuError::NoAdapter));
-            // Nobody may listen any more.
-            let _ = told.send(News::Found(found));
+            told(found);
         };
         // If there can be no thread, there can be no device either.
         if self.spawn("devices", answer).is_err() {
-            let _ = tell.send(News::Found(Found::None(GpuError::NoAdapter)));
+            tell(Found::None(GpuError::NoAdapter));
+        }
+    }
+
+    /// Compiles the shader of a picture that is to come, for the devices that are open now: those on software too, if
+    /// asked for.
+    pub(super) fn compile_ahead(&self, packed: &Packed, settings: &Settings, software: bool) {
+        // Where devices are being opened, they are not open yet.
+        let Ok(open) = self.open.try_lock().map(|open| open.clone()) else {
+            return;
+        };
+        for device in open {
+            let gpu = &device.gpu;
+            if software || !gpu.software {
+                let features = FeatureSet::new(packed, settings, gpu.lanes);
+                let features = features.for_a_file(gpu.software);
+                // If this fails, so will compiling it when it is wanted, and that is told.
+                let _ = device
+                    .compiled
+                    .get(gpu, &compose(packed, &features, Entry::Picture));
+            }
         }
     }
 

@@ -17,6 +17,7 @@ mod report;
 mod run;
 #[cfg(test)]
 mod tests;
+mod turns;
 
 use std::error::Error as _;
 use std::sync::Arc;
@@ -40,6 +41,7 @@ pub use crate::frame::{Band, Emit, PixelFault, StopRequested};
 pub use crate::settings::{Backend, Precision, SamplePattern, Settings};
 pub use devices::Devices;
 pub use report::{Beside, Report, Seconds, WorkerReport, WorkerSeconds};
+pub use turns::{Turn, Turns};
 
 /// Why a rendering failed.
 #[derive(Debug, thiserror::Error)]
@@ -172,7 +174,25 @@ pub fn render_with(
 ) -> Result<Report, Error> {
     // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
     start_threads(settings)?;
-    run(scene, settings, Source::Devices(devices), &|| false, emit)
+    let source = Source::Devices(devices);
+    run(scene, settings, source, None, &|| false, emit)
+}
+
+/// The same as one of many pictures: prepares the scene, waits for the turn, and passes it on when all rows are made,
+/// before the last of them are handed on.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_in_turn(
+    scene: &Scene,
+    settings: &Settings,
+    devices: &Devices,
+    turn: &Turn<'_>,
+    emit: &mut Emit<'_>,
+) -> Result<Report, Error> {
+    start_threads(settings)?;
+    let source = Source::Devices(devices);
+    run(scene, settings, source, Some(turn), &|| false, emit)
 }
 
 /// The same on a device that somebody else has opened, and alone; the CPU goes on where it fails.
@@ -185,7 +205,7 @@ pub fn render_live(
     live: &Live<'_>,
     emit: &mut Emit<'_>,
 ) -> Result<Report, Error> {
-    run(scene, settings, Source::Live(live), live.stop, emit)
+    run(scene, settings, Source::Live(live), None, live.stop, emit)
 }
 
 /// Starts the CPU threads that all pictures share, where they are wanted.
@@ -219,6 +239,7 @@ fn run(
     scene: &Scene,
     settings: &Settings,
     source: Source<'_>,
+    turn: Option<&Turn<'_>>,
     stop: &StopRequested<'_>,
     emit: &mut Emit<'_>,
 ) -> Result<Report, Error> {
@@ -236,7 +257,7 @@ fn run(
     let jitter = Arc::new(settings.sampling(width, settings.rows_of(height).end));
     let decider = PixelDecider::new(scene, settings, &jitter).stopping(stop);
     let rendering = Rendering::new(scene, settings, &jitter, decider, pool.as_ref(), stop);
-    let told = rendering.run(source, emit, &mut watch)?;
+    let told = rendering.run(source, turn, emit, &mut watch)?;
     drop(rendering);
     watch.lap(Phase::Release);
     Ok(Report::new(scene, settings, threads, told, &watch))

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::Settings;
 use super::bag::Bag;
@@ -9,9 +10,14 @@ use super::report::Told;
 use crate::certify::lanes::Lanes;
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
+use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::shader::pack::Packed;
+
+/// So many pixels are tried, or as many as this time allows, before it is said how long a picture will take.
+const TRIED_PIXELS: u32 = 128;
+const TRYING: Duration = Duration::from_millis(2);
 
 /// Everything that workers need to know.
 pub(super) struct Rendering<'a> {
@@ -80,6 +86,42 @@ impl<'a> Rendering<'a> {
             Some(pool) => pool.install(work),
             None => self.on_threads(work),
         }
+    }
+
+    /// The part of all threads that [`on_fewer_threads`](Self::on_fewer_threads) uses.
+    pub(super) fn share_of_fewer_threads(&self) -> f64 {
+        let all = self.on_threads(rayon::current_num_threads);
+        if all > 1 {
+            (all - 1) as f64 / all as f64
+        } else {
+            1.0
+        }
+    }
+
+    /// How long the CPU would take for the whole picture, pixel by pixel, by a few pixels from all over it.
+    pub(super) fn seems_to_take(&self) -> Duration {
+        let threads = self.on_threads(rayon::current_num_threads);
+        let [width, rows] = [u64::from(self.width), self.rows.len() as u64];
+        let started = Instant::now();
+        let mut tried = 0;
+        while tried < TRIED_PIXELS && started.elapsed() < TRYING {
+            // Multiples of the plastic ratio's inverse and its square are spread evenly, however many there are.
+            let at =
+                |step: f64, of: u64| ((f64::from(tried + 1) * step).fract() * of as f64) as u64;
+            let (column, row) = (at(0.754_877_67, width), at(0.569_840_29, rows));
+            let top = self.rows.end - 1 - row as u32;
+            let known = Partials::default();
+            let traced = self
+                .decider
+                .pixels(top, &[column as u32], &known, &|| self.bag.is_over());
+            if traced.is_err() {
+                // The rendering will end, or find that it is one that cannot be.
+                return Duration::ZERO;
+            }
+            tried += 1;
+        }
+        let all = (width * rows) as f64 / f64::from(tried.max(1)) / threads as f64;
+        started.elapsed().mul_f64(all)
     }
 
     /// The scene rounded to f32, for devices and lanes alike.

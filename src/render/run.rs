@@ -16,7 +16,8 @@ use super::device_worker::Here;
 use super::devices::{Devices, Found, Wanted};
 use super::rendering::Rendering;
 use super::report::Told;
-use super::{Backend, Emit, Error, Live, Precision, install_hint};
+use super::turns::Turn;
+use super::{Backend, Band, Emit, Error, Live, Precision, install_hint};
 use crate::gpu::GpuError;
 use crate::gpu::candidates::{is_named, may_be_hardware};
 use crate::stopwatch::{Phase, Stopwatch};
@@ -48,10 +49,24 @@ impl Rendering<'_> {
         Ok(false)
     }
 
+    /// What can be done for a picture while another one is rendered: packing the scene, and compiling its shader for
+    /// the devices that are open and will work on it.
+    fn prepare_ahead(&self, source: Source<'_>, wants_devices: bool) {
+        self.lanes();
+        if let (true, Source::Devices(devices)) = (wants_devices, source) {
+            let packed = self.packed();
+            if packed.unprovable.is_none() || !self.settings.has_gpu_bounds() {
+                let software = self.settings.backend == Backend::Gpu;
+                devices.compile_ahead(&packed, self.settings, software);
+            }
+        }
+    }
+
     /// Renders. Returns what came of it.
     pub(super) fn run<'s>(
         &'s self,
         source: Source<'s>,
+        turn: Option<&Turn<'_>>,
         emit: &mut Emit<'_>,
         watch: &mut Stopwatch,
     ) -> Result<Told, Error> {
@@ -66,11 +81,18 @@ impl Rendering<'_> {
         if let (true, Source::Devices(devices)) = (wants_devices, source)
             && (waits || devices.are_given() || may_be_hardware())
         {
-            devices.ask(Wanted::new(self.settings, waits), sender.clone());
+            let wanted = Wanted::new(self.settings, waits);
+            devices.ask(wanted, News::of_devices(sender.clone()));
             asked = true;
         }
         self.on_threads(|| self.decider.exact_tracer());
         watch.lap(Phase::Prepare);
+        if let Some(turn) = turn {
+            self.prepare_ahead(source, wants_devices);
+            watch.lap(Phase::Pack);
+            turn.wait();
+            watch.lap(Phase::Held);
+        }
         let found = match source {
             _ if !wants_devices => Vec::new(),
             Source::Live(live) => vec![Here::Live(live)],
@@ -107,6 +129,12 @@ impl Rendering<'_> {
                 crew.spawn("devices", move || crew.late(devices, asked, &news, &sender));
             }
             watch.lap(Phase::Threads);
+            let emit = &mut |band: &Band| {
+                if let Some(turn) = turn.filter(|_| self.bag.is_made()) {
+                    turn.pass();
+                }
+                emit(band)
+            };
             self.bag.emit(emit, watch)
         });
         watch.lap(Phase::Drain);

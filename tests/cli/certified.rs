@@ -23,7 +23,15 @@ fn the_report_says_what_decided_every_pixel() {
         assert_eq!(report["pixels"], 1200);
         let decided = report["decided"].as_object().unwrap();
         let stages: Vec<&str> = decided.keys().map(String::as_str).collect();
-        let mut expected = ["gpu", "f32", "f64", "multiprecision", "tie", "presumed"];
+        let mut expected = [
+            "gpu",
+            "f32",
+            "f64",
+            "pairs",
+            "multiprecision",
+            "tie",
+            "presumed",
+        ];
         expected.sort_unstable();
         assert_eq!(stages, expected);
         let sum: u64 = decided.values().map(|n| n.as_u64().unwrap()).sum();

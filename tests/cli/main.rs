@@ -13,4 +13,5 @@ mod files;
 mod gpu;
 mod inspect;
 mod lit;
+mod many;
 mod options;

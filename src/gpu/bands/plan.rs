@@ -12,6 +12,9 @@ const FIRST_TESTS: f64 = 56e6;
 /// What a pixel costs beside its objects, in tests.
 const PIXEL_TESTS: u64 = 8;
 
+/// Most pixels of a dispatch in a direction: every device has so many workgroups.
+const MOST_ACROSS: u32 = 65_535 * WORKGROUP;
+
 /// A rectangle of a band: columns of rows `band` (from the bottom).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Rectangle {
@@ -98,7 +101,8 @@ impl Plan {
 
     /// Rows that a band should have: whole workgroups of them if they fit.
     fn wish(&self) -> u32 {
-        let fitting = (self.largest / u64::from(self.width)).clamp(1, u64::from(u32::MAX)) as u32;
+        let fitting = self.largest / u64::from(self.width);
+        let fitting = fitting.clamp(1, u64::from(MOST_ACROSS)) as u32;
         let timely = (self.pixels / u64::from(self.width)) as u32 / WORKGROUP * WORKGROUP;
         let wish = self.band_rows.unwrap_or(timely.max(WORKGROUP));
         wish.clamp(1, fitting)
@@ -117,7 +121,7 @@ impl Plan {
         };
         let height = u64::from(band.end - band.start);
         let cut = (self.pixels / height) as u32 / WORKGROUP * WORKGROUP;
-        let end = column.saturating_add(cut.max(WORKGROUP)).min(self.width);
+        let end = column + cut.clamp(WORKGROUP, MOST_ACROSS).min(self.width - column);
         let last = end == self.width;
         if !last {
             self.band = Some((band.clone(), end));
@@ -164,7 +168,8 @@ mod tests {
             assert_eq!(r.columns.start, column);
             assert_eq!(r.band.end, top);
             assert!(r.pixels() <= largest && r.pixels() > 0, "{r:?}");
-            let fitting = (largest / u64::from(width)).max(1);
+            assert!(r.columns.len() as u32 <= MOST_ACROSS && r.band.len() as u32 <= MOST_ACROSS);
+            let fitting = (largest / u64::from(width)).clamp(1, u64::from(MOST_ACROSS));
             if let Some(band_rows) = band_rows {
                 let height = u64::from(band_rows)
                     .min(fitting)
@@ -193,6 +198,9 @@ mod tests {
         covers(1_000_000, 3..57, MAX_PIXELS, 3, fast);
         covers(1_000_000, 0..40, MAX_PIXELS, 1_000_000, slow);
         covers(7, 100..1_000_000, MAX_PIXELS, 3, fast);
+        // More rows, and more columns, than there can be workgroups for in one dispatch.
+        covers(1, 0..1_000_000, MAX_PIXELS, 3, fast);
+        covers(1_000_000, 5..6, MAX_PIXELS, 3, fast);
     }
 
     #[test]

@@ -6,8 +6,8 @@ use dashu_base::{BitTest, SquareRoot};
 use dashu_int::{IBig, UBig};
 
 use super::mag::{Low, Mag, top};
-use crate::real::Bounded;
 use crate::real::rational::Ratio;
+use crate::real::{Bounded, Pair};
 
 /// Every real within `rad` of mid·2^exp.
 #[derive(Debug, Clone)]
@@ -221,6 +221,13 @@ impl Ball {
         // Rounding to the nearest integer is the floor of the number plus one half.
         let cut = (-self.exp) as usize;
         Some((&self.mid + (IBig::ONE << (cut - 1))) >> cut)
+    }
+
+    /// The ball as a pair of f64.
+    pub(super) fn pair(&self) -> Pair {
+        let first = self.bounded().value;
+        let rest = self.add(&Self::exact(-first), 256);
+        Pair::from_parts(first, rest.map_or(self.bounded(), |rest| rest.bounded()))
     }
 
     /// The ball in f64.

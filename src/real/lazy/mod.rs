@@ -22,7 +22,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use dashu_int::IBig;
 
-use super::{Bounded, Real, Undecided};
+use super::float::nearest_f32_by_middle;
+use super::{Bounded, Pair, Real, Undecided};
 use crate::real::rational::Ratio;
 use arena::{Op, with};
 
@@ -71,6 +72,16 @@ pub(super) fn bounded_versine(angle: f64) -> Option<Bounded> {
 /// A rigorous f64 enclosure of the cosine of 0 to 180 degrees.
 pub(super) fn bounded_cosine(angle: f64) -> Bounded {
     cosine::cosine(angle, 128).bounded()
+}
+
+/// The cosine of 0 to 180 degrees, as a pair has it.
+pub(super) fn pair_of_cosine(angle: f64) -> Pair {
+    cosine::cosine(angle, 256).pair()
+}
+
+/// 1 − the cosine of a small angle, if that is to be known, as a pair has it.
+pub(super) fn pair_of_versine(angle: f64) -> Option<Pair> {
+    cosine::narrow(angle).then(|| cosine::versine(angle, 256).pair())
 }
 
 impl Add for Lazy {
@@ -183,31 +194,7 @@ impl Real for Lazy {
     }
 
     fn nearest_f32(self) -> Result<f32, Undecided> {
-        if let Ok(value) = self.bounded().nearest_f32() {
-            return Ok(value);
-        }
-        // The number is near the middle between two f32: its side of the middle decides, and on the middle the even one
-        // is taken.
-        let enclosure = self.bounded();
-        let margin = enclosure.error * Bounded::GROW;
-        let (low, high) = (
-            (enclosure.value - margin).next_down() as f32,
-            (enclosure.value + margin).next_up() as f32,
-        );
-        let (low, high) = if low < high {
-            (low, high)
-        } else {
-            (low.next_down(), low)
-        };
-        if high != low.next_up() {
-            return Err(Undecided);
-        }
-        let middle = super::float::middle(low, high);
-        Ok(match (self - Self::exact(middle)).sign()? {
-            Ordering::Less => low,
-            Ordering::Greater => high,
-            Ordering::Equal => middle as f32,
-        })
+        nearest_f32_by_middle(self, self.bounded())
     }
 
     fn mark() -> Mark {

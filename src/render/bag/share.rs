@@ -1,6 +1,5 @@
 //! How large a band is to be, when one is made twice, and which of two workers that use the same cores is the quicker.
 
-use std::ops::Range;
 use std::time::Duration;
 
 use super::worker::Role;
@@ -41,22 +40,20 @@ pub(super) fn pays_twice(pixels: f64, mine: f64, other: Option<f64>, since: Dura
 }
 
 /// A worker that uses the same cores as another is tried: it brings a band beside the other's, since the first one takes
-/// longer than those that follow; then each of the two makes one alone, and the quicker one makes the rest.
+/// longer than those that follow; then it makes one alone, and whoever is the quicker makes the rest.
 #[derive(Debug, Default)]
 pub(super) enum Trial {
     /// The one on trial has not brought its first band.
     #[default]
     Warming,
-    /// The other one makes a band alone, these rows if it has begun.
-    Reference(Option<Range<u32>>),
-    /// The one on trial does, and has this speed to beat.
+    /// It makes a band alone, and has this speed to beat.
     Tried(f64),
     /// It is decided.
     Decided,
 }
 
 /// Seconds of work that have to be left for a trial to be worth it.
-const WORTH: f64 = 0.1;
+const WORTH: f64 = 0.05;
 
 impl Trial {
     /// Whether the one on trial has not brought its first band.
@@ -75,50 +72,22 @@ impl Trial {
     /// Whether a worker with this role may take a band now; `has_some` if it has one already.
     pub(super) fn admits(&self, role: Role, has_some: bool) -> bool {
         match (self, role) {
-            (Self::Warming, Role::OnTrial) => !has_some,
-            (Self::Reference(_), Role::OnTrial) => false,
-            (Self::Reference(begun), Role::Works) => begun.is_none(),
-            (Self::Tried(_), Role::OnTrial) => !has_some,
+            (Self::Warming | Self::Tried(_), Role::OnTrial) => !has_some,
             (Self::Tried(_), Role::Works) => false,
             _ => true,
         }
     }
 
-    /// A worker with this role took these rows.
-    pub(super) fn took(&mut self, role: Role, rows: &Range<u32>) {
-        if let (Self::Reference(begun @ None), Role::Works) = (&mut *self, role) {
-            *begun = Some(rows.clone());
-        }
-    }
-
-    /// Nobody makes these rows any more. If they were to be the other one's measure and told nothing, another band is.
-    pub(super) fn closed(&mut self, rows: &Range<u32>) {
-        if let Self::Reference(begun) = self
-            && begun.as_ref() == Some(rows)
-        {
-            *begun = None;
-        }
-    }
-
-    /// A worker with this role brought these rows, at so many pixels a second; so many pixels are left. Returns which
-    /// one is quicker, if that is decided.
-    pub(super) fn learns(
-        &mut self,
-        role: Role,
-        rows: &Range<u32>,
-        speed: f64,
-        left: f64,
-    ) -> Option<Role> {
-        let (next, quicker) = match (&*self, role) {
-            (Self::Warming, Role::OnTrial) => (Self::Reference(None), None),
-            (Self::Reference(Some(reference)), Role::Works) if reference == rows => {
-                if left < WORTH * speed {
-                    (Self::Decided, Some(Role::Works))
-                } else {
-                    (Self::Tried(speed), None)
-                }
+    /// The one on trial brought a band, at so many pixels a second; so many pixels are left. The other one has this
+    /// speed alone, if it was seen to bring anything. Returns which one is quicker, if that is decided.
+    pub(super) fn learns(&mut self, speed: f64, other: Option<f64>, left: f64) -> Option<Role> {
+        let (next, quicker) = match (&*self, other) {
+            (Self::Warming, None) => (Self::Decided, Some(Role::OnTrial)),
+            (Self::Warming, Some(other)) if left < WORTH * other => {
+                (Self::Decided, Some(Role::Works))
             }
-            (Self::Tried(reference), Role::OnTrial) => {
+            (Self::Warming, Some(other)) => (Self::Tried(other), None),
+            (Self::Tried(reference), _) => {
                 let quicker = if speed > *reference {
                     Role::OnTrial
                 } else {
@@ -126,7 +95,7 @@ impl Trial {
                 };
                 (Self::Decided, Some(quicker))
             }
-            _ => return None,
+            (Self::Decided, _) => return None,
         };
         *self = next;
         quicker
@@ -187,8 +156,8 @@ mod tests {
         assert!(pays_twice(100.0, 10.0, None, seconds(21.0)));
     }
 
-    /// A trial up to its decision; `quick` is the speed of the one on trial, against 10.
-    fn decided(quick: f64, left: f64) -> Option<Role> {
+    /// A trial up to its decision; `quick` is the speed of the one on trial, against the other's.
+    fn decided(quick: f64, other: Option<f64>, left: f64) -> Option<Role> {
         use Role::{OnTrial, Works};
         let mut trial = Trial::default();
         // Both work until the one on trial has brought a band, of which it has one.
@@ -197,15 +166,9 @@ mod tests {
                 && trial.admits(OnTrial, false)
                 && !trial.admits(OnTrial, true)
         );
-        assert_eq!(trial.learns(Works, &(90..100), 10.0, left), None);
         assert!(trial.is_warming());
-        assert_eq!(trial.learns(OnTrial, &(80..90), 1.0, left), None);
-        // The band that the other one had then does not count; its next one does, and is alone.
-        assert_eq!(trial.learns(Works, &(70..80), 99.0, left), None);
-        assert!(trial.admits(Works, false) && !trial.admits(OnTrial, false));
-        trial.took(Works, &(60..70));
-        assert!(!trial.admits(Works, false) && !trial.admits(OnTrial, false));
-        if let Some(decided) = trial.learns(Works, &(60..70), 10.0, left) {
+        // How long that took does not count.
+        if let Some(decided) = trial.learns(1.0, other, left) {
             return Some(decided);
         }
         assert!(
@@ -213,16 +176,19 @@ mod tests {
                 && trial.admits(OnTrial, false)
                 && !trial.admits(OnTrial, true)
         );
-        let decided = trial.learns(OnTrial, &(50..60), quick, left);
+        let decided = trial.learns(quick, other, left);
         assert!(trial.admits(Works, false) && trial.admits(OnTrial, true));
+        assert_eq!(trial.learns(99.0, other, left), None);
         decided
     }
 
     #[test]
     fn the_quicker_one_makes_the_rest() {
-        assert_eq!(decided(11.0, 1e6), Some(Role::OnTrial));
-        assert_eq!(decided(9.0, 1e6), Some(Role::Works));
+        assert_eq!(decided(11.0, Some(10.0), 1e6), Some(Role::OnTrial));
+        assert_eq!(decided(9.0, Some(10.0), 1e6), Some(Role::Works));
+        // The other one brought nothing while this one even came.
+        assert_eq!(decided(1.0, None, 1e6), Some(Role::OnTrial));
         // There is not enough left for a trial.
-        assert_eq!(decided(1000.0, 0.5), Some(Role::Works));
+        assert_eq!(decided(1000.0, Some(10.0), 0.4), Some(Role::Works));
     }
 }
