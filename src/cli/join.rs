@@ -63,6 +63,17 @@ pub(crate) struct Args {
     quiet: bool,
 }
 
+/// Refuses a folder where a picture's name belongs.
+fn refuse_folder(target: &Target) -> Result<()> {
+    match target {
+        Target::Path(path) if path.is_dir() => bail!(
+            "cannot write {}: it is a folder; name the file too, such as picture.ppm",
+            path.display()
+        ),
+        _ => Ok(()),
+    }
+}
+
 /// A picture that is whole, as `--json` prints it.
 #[derive(Debug, Serialize)]
 pub(crate) struct Whole {
@@ -121,9 +132,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         let _ = plumb::cores::start(args.threads);
     }
     let target = Target::from_argument(args.output.as_os_str());
-    if target.path().is_dir() {
-        bail!("cannot write {target}: it is a folder; name the file too, such as picture.ppm");
-    }
+    refuse_folder(&target)?;
     let format = target.format()?;
     if target.is_stdout() && !args.check {
         picture::check_stdout()?;

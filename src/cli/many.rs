@@ -31,13 +31,10 @@ const NAMED: usize = 5;
 
 /// Renders the scenes.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
-    let job = args.parts.job()?;
     match &args.scenes[..] {
-        [scene] => render::one(scene, &args.options, job.as_ref()),
-        _ if job.is_some() => {
-            bail!(
-                "the parts of a picture are of one scene: give one scene with --part and --resume"
-            )
+        [scene] => render::one(scene, args),
+        _ if args.parts.job()?.is_some() => {
+            bail!("--part and --resume are of one picture: give one scene")
         }
         scenes => Run::new(scenes, &args.options)?.run(),
     }

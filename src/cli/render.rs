@@ -21,7 +21,7 @@ use serde::Serialize;
 use super::args::RenderOptions;
 use super::destination::Destination;
 use super::outputs::Outputs;
-use super::parts::{self, Job, PartOptions};
+use super::parts::{self, PartOptions};
 use super::picture::{self, PictureFile};
 use super::place::Place;
 use super::progress::Progress;
@@ -70,14 +70,14 @@ picture."
 /// What is rendered, and under which name.
 pub(crate) struct RenderCommand<'a> {
     /// What errors and reports call the scene.
-    pub(crate) name: &'a str,
+    pub(super) name: &'a str,
     /// The scene's file, if it has one.
     file: Option<&'a Path>,
-    pub(crate) targets: Targets,
-    pub(crate) scene: Scene,
+    pub(super) targets: Targets,
+    pub(super) scene: Scene,
     /// What may surprise in its picture.
-    pub(crate) remarks: Vec<String>,
-    pub(crate) options: &'a RenderOptions,
+    pub(super) remarks: Vec<String>,
+    pub(super) options: &'a RenderOptions,
     /// Its place among many.
     place: Option<&'a Place<'a>>,
 }
@@ -119,16 +119,17 @@ pub(crate) fn file(scene: &Path) -> Option<&Path> {
     (!source::is_stdin(scene)).then_some(scene)
 }
 
-/// Renders a scene file, alone; in parts, where that was asked for.
-pub(crate) fn one(scene: &Path, options: &RenderOptions, job: Option<&Job<'_>>) -> Result<Answer> {
+/// Renders a scene file, alone.
+pub(crate) fn one(scene: &Path, args: &Args) -> Result<Answer> {
+    let options = &args.options;
     start_threads(options);
     let name = source::name(scene);
     let loaded = source::load_with_text(scene)?;
     let targets = Targets::new(options, file(scene))?;
     let command = RenderCommand::new((&name, file(scene)), loaded, targets, options, None);
-    match job {
+    match args.parts.job()? {
         None => command.run(),
-        Some(job) => parts::run(&command, job),
+        Some(job) => parts::run(&command, &job),
     }
 }
 
@@ -163,7 +164,7 @@ pub(crate) fn start_threads(options: &RenderOptions) {
 
 /// The process's devices. They are never closed, and the process does not end by returning from `main` (see `end`): who
 /// has a picture does not wait for a driver that may still be loading.
-pub(crate) fn devices() -> &'static Devices {
+pub(super) fn devices() -> &'static Devices {
     static DEVICES: OnceLock<Devices> = OnceLock::new();
     DEVICES.get_or_init(Devices::new)
 }
@@ -195,7 +196,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// Whether stderr is for talk.
-    pub(crate) fn talks(&self) -> bool {
+    pub(super) fn talks(&self) -> bool {
         self.options.talks(&self.targets.picture)
     }
 
@@ -208,7 +209,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
-    pub(crate) fn check(&self, target: &Target) -> Result<()> {
+    pub(super) fn check(&self, target: &Target) -> Result<()> {
         if target.is_stdout() {
             picture::check_stdout()?;
         }
@@ -326,7 +327,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// What the picture's file tells of how it was made.
-    pub(crate) fn metadata(&self, settings: &Settings) -> Metadata {
+    pub(super) fn metadata(&self, settings: &Settings) -> Metadata {
         let scene = self
             .file
             .and_then(Path::file_name)
@@ -335,7 +336,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// The error, with what would mend it.
-    pub(crate) fn explain(&self, error: render::Error) -> anyhow::Error {
+    pub(super) fn explain(&self, error: render::Error) -> anyhow::Error {
         match error {
             render::Error::Gpu(plumb::gpu::GpuError::NoAdapter) => {
                 anyhow!(

@@ -50,22 +50,6 @@ impl Canvas {
         Ok(Self { pixels, size })
     }
 
-    /// A picture of these words that does not change any more, on a device that did not render it.
-    ///
-    /// # Errors
-    /// If the device has no memory for it.
-    pub fn of(gpu: &Gpu, size: [u32; 2], words: &[u32]) -> Result<Self, GpuError> {
-        let pixels = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("canvas"),
-                contents: bytemuck::cast_slice(words),
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-            });
-        gpu.check()?;
-        Ok(Self { pixels, size })
-    }
-
     /// The word of a pixel with these bytes, decided by that.
     pub fn word([r, g, b]: [u8; 3], by: DecidedBy) -> u32 {
         u32::from_le_bytes([r, g, b, by as u8])

@@ -20,17 +20,19 @@ use eframe::egui::{self, Context, Rect, Ui};
 
 use super::canvases::Canvases;
 use super::chooser::{Chooser, Purpose};
+use super::draw::ObjectMap;
 use super::handles::Grabbed;
 use super::hints::Hints;
 use super::inspect::{Answer, Inspector};
 use super::inspector::Panel;
 use super::keys::Command;
 use super::overlay::{self, Chosen, SaveAs};
+use super::painter;
 use super::panels::Panels;
 use super::picture::{self, Showing};
 use super::recent::Recent;
 use super::rendering::Rendering;
-use super::screen::{self, ObjectMap};
+use super::screen;
 use super::session::{self, Session};
 use super::shared_session::SharedSession;
 use super::side::{self, Side};
@@ -80,8 +82,6 @@ impl Teller {
 pub(super) struct App {
     /// The device that renders.
     gpu: Arc<Gpu>,
-    /// The device that draws the window; perhaps the same.
-    window: Arc<Gpu>,
     options: Options,
     shared: SharedSession,
     events: Receiver<Event>,
@@ -143,7 +143,12 @@ impl App {
         options: Options,
     ) -> anyhow::Result<Self> {
         let state = creation.wgpu_render_state.as_ref();
-        screen::install(state.ok_or_else(|| anyhow::anyhow!("egui does not draw with wgpu"))?);
+        let state = state.ok_or_else(|| anyhow::anyhow!("egui does not draw with wgpu"))?;
+        if Arc::ptr_eq(&gpu, &window) {
+            screen::install(state);
+        } else {
+            painter::install(state, &creation.egui_ctx);
+        }
         window.check()?;
         let (sender, events) = mpsc::channel();
         let teller = Teller {
@@ -171,7 +176,6 @@ impl App {
         let mut app = Self {
             shared,
             gpu,
-            window,
             options,
             events,
             teller,

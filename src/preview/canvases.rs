@@ -1,12 +1,11 @@
 //! How pictures come to where the window draws them from.
 //!
 //! Between the worker, which renders them, and the screen. Where one device does both, a picture is made in its place
-//! and never leaves the device. Where the window has a device of its own (`gpu::adapters::open_beside`), the picture's
-//! bytes, which the host has anyway, are handed to that one once the picture is done.
+//! and never leaves the device. Where the host draws the window ([`painter`](super::painter)), it has the bytes anyway.
 
 use std::sync::Arc;
 
-use crate::frame::{Band, DecidedBy};
+use crate::frame::Band;
 use crate::gpu::GpuError;
 use crate::gpu::canvas::{Canvas, Scatter};
 use crate::gpu::device::Gpu;
@@ -21,8 +20,8 @@ pub(super) enum Canvases {
         /// Canvases to be used again once nobody shows them.
         kept: Vec<Arc<Canvas>>,
     },
-    /// Pictures are handed over to this device.
-    HandedOver { window: Arc<Gpu> },
+    /// The host draws pictures from their bytes.
+    OnHost,
 }
 
 impl Canvases {
@@ -38,16 +37,14 @@ impl Canvases {
                 kept: Vec::new(),
             });
         }
-        Ok(Self::HandedOver {
-            window: Arc::clone(window),
-        })
+        Ok(Self::OnHost)
     }
 
     /// The most pixels that a picture can have.
     pub(super) fn most(&self) -> u64 {
         match self {
             Self::InPlace { gpu, .. } => Canvas::most(gpu),
-            Self::HandedOver { window } => Canvas::most(window),
+            Self::OnHost => u64::MAX,
         }
     }
 
@@ -72,27 +69,6 @@ impl Canvases {
         match (self, canvas) {
             (Self::InPlace { gpu, scatter, .. }, Some(canvas)) => scatter.put(gpu, canvas, band),
             _ => Ok(()),
-        }
-    }
-
-    /// The canvas of a picture that is done: the one that was begun, or another one of these bytes and what decided
-    /// them, rows from the top.
-    pub(super) fn end(
-        &self,
-        begun: Option<Arc<Canvas>>,
-        size: [u32; 2],
-        rgb: &[u8],
-        verdicts: &[DecidedBy],
-    ) -> Result<Arc<Canvas>, GpuError> {
-        match (self, begun) {
-            (_, Some(canvas)) => Ok(canvas),
-            (Self::InPlace { gpu: device, .. } | Self::HandedOver { window: device }, None) => {
-                let pixels = rgb.as_chunks::<3>().0.iter().zip(verdicts);
-                let words: Vec<u32> = pixels
-                    .map(|(bytes, by)| Canvas::word(*bytes, *by))
-                    .collect();
-                Ok(Arc::new(Canvas::of(device, size, &words)?))
-            }
         }
     }
 }

@@ -11,9 +11,11 @@
 
 mod adaptive_resolution;
 mod app;
+mod blit;
 mod canvases;
 mod chooser;
 mod display;
+mod draw;
 mod handles;
 mod hints;
 mod inspect;
@@ -22,6 +24,7 @@ mod keys;
 mod latest;
 mod legend;
 mod overlay;
+mod painter;
 mod panels;
 mod picture;
 mod priority;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use eframe::egui::{self, Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Ui};
-use eframe::egui_wgpu::Callback;
 
-use super::screen::{Draw, Outlined};
+use super::draw::{Draw, Outlined};
+use super::screen;
 use super::viewport::{Area, Placed, Viewport};
 use super::worker::PreviewPicture;
 
@@ -91,13 +91,16 @@ pub(super) fn show(
     mouse.over = over.and_then(|at| placed.pixel(at, size));
     mouse.clicked = response.clicked_by(PointerButton::Primary);
     let draw = Draw {
-        canvas: Arc::clone(&picture.canvas),
+        pixels: Arc::clone(&picture.pixels),
         size,
         placed,
         verdicts: showing.verdicts,
         outlined: showing.outlined.clone(),
     };
-    painter.add(Callback::new_paint_callback(rect, draw));
+    painter.add(match &picture.canvas {
+        Some(canvas) => screen::shape(rect, Arc::clone(canvas), draw),
+        None => super::painter::shape(rect, draw),
+    });
     let cell = |[x, y]: [u32; 2]| -> Rect {
         let row = size[1] - 1 - y;
         let corner = |column: u32, row: u32| {
@@ -108,7 +111,7 @@ pub(super) fn show(
         };
         Rect::from_min_max(corner(x, row), corner(x + 1, row + 1))
     };
-    if placed.zoom / scale >= LABELLED && picture.canvas.size == size {
+    if placed.zoom / scale >= LABELLED && picture.pixels.size == size {
         label(&painter, picture, &placed, area, &cell);
     }
     if let Some(pixel) = held {
@@ -194,12 +197,12 @@ fn turned(input: &egui::InputState) -> (f64, f64) {
 
 /// The bytes of a pixel: column, and row from the bottom.
 pub(super) fn bytes(picture: &PreviewPicture, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
-    let [width, height] = picture.canvas.size;
-    if picture.canvas.size != picture.scene.camera.pixeldim || x >= width || y >= height {
+    let [width, height] = picture.pixels.size;
+    if picture.pixels.size != picture.scene.camera.pixeldim || x >= width || y >= height {
         return None;
     }
     let place = (height - 1 - y) as usize * width as usize + x as usize;
-    picture.rgb.as_chunks::<3>().0.get(place).copied()
+    picture.pixels.rgb.as_chunks::<3>().0.get(place).copied()
 }
 
 /// Writes their bytes into the pixels that are seen.
@@ -210,7 +213,7 @@ fn label(
     area: Area,
     cell: &dyn Fn([u32; 2]) -> Rect,
 ) {
-    let [width, height] = picture.canvas.size;
+    let [width, height] = picture.pixels.size;
     let [first, last] = [0.0, 1.0].map(|end| {
         let corner = [0, 1].map(|i| area.corner[i] + end * area.size[i]);
         placed.at(corner)

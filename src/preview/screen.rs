@@ -7,12 +7,15 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu};
-use eframe::epaint::PaintCallbackInfo;
+use eframe::egui::Rect;
+use eframe::egui_wgpu::{
+    Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu,
+};
+use eframe::epaint::{PaintCallback, PaintCallbackInfo};
 use wgpu::util::DeviceExt as _;
 
-use super::viewport::Placed;
-use crate::certify::verdict;
+use super::blit::{self, Blit, Drawn};
+use super::draw::{BORDER, Draw, OUTLINE, ObjectMap, TAPS, shown_as};
 use crate::frame::DecidedBy;
 use crate::gpu::canvas::Canvas;
 
@@ -30,148 +33,48 @@ struct ScreenUniforms {
     nothing: u32,
 }
 
-/// What each pixel of a picture sees, on the GPU.
-#[derive(Debug)]
-pub(super) struct ObjectMap {
-    /// Columns and rows.
-    pub(super) size: [u32; 2],
-    /// Numbers of objects, from 1; 0 is nothing. Rows from the top.
-    pub(super) objects: wgpu::Buffer,
-}
-
-/// Objects to be outlined.
-#[derive(Debug, Clone)]
-pub(super) struct Outlined {
-    /// What each pixel sees.
-    pub(super) seen: Arc<ObjectMap>,
-    /// A bit for each number of an object.
-    pub(super) chosen: Arc<wgpu::Buffer>,
-}
-
-/// A picture to be drawn.
-#[derive(Debug, Clone)]
-pub(super) struct Draw {
-    /// The picture.
-    pub(super) canvas: Arc<Canvas>,
-    /// As large as this.
-    pub(super) size: [u32; 2],
-    /// Where.
-    pub(super) placed: Placed,
-    /// Whether to paint what decided each pixel.
-    pub(super) verdicts: bool,
-    /// What to outline.
-    pub(super) outlined: Option<Outlined>,
-}
-
 /// What all pictures are drawn with; kept by egui's renderer.
 struct Screen {
     pipeline: wgpu::RenderPipeline,
-    blit: wgpu::RenderPipeline,
+    blit: Blit,
     view: wgpu::Buffer,
     /// In place of buffers that are not there.
     nothing: wgpu::Buffer,
-    drawn: Option<Drawn>,
+    /// What each pixel sees, as it was handed over last.
+    seen: Option<(Arc<ObjectMap>, wgpu::Buffer)>,
+    /// What was drawn last. A canvas that is held here is not used for another picture.
+    last: Option<(OnDevice, Drawn)>,
 }
 
-/// A picture that was drawn into a texture as large as the window.
-struct Drawn {
-    /// What it shows. A canvas that is held here is not used for another picture.
+/// A picture to be drawn where it lies.
+#[derive(Clone)]
+struct OnDevice {
     draw: Draw,
-    window: [u32; 2],
-    texture: wgpu::Texture,
-    bound: wgpu::BindGroup,
+    canvas: Arc<Canvas>,
 }
 
-/// What is drawn is bytes, whatever the window's surface is made of.
-const DRAWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-
-impl Draw {
-    /// Whether it would look the same.
-    fn is_as(&self, other: &Self) -> bool {
-        let outlined = match (&self.outlined, &other.outlined) {
-            (None, None) => true,
-            (Some(a), Some(b)) => {
-                Arc::ptr_eq(&a.seen, &b.seen) && Arc::ptr_eq(&a.chosen, &b.chosen)
-            }
-            _ => false,
-        };
-        outlined
-            && Arc::ptr_eq(&self.canvas, &other.canvas)
-            && (self.size, self.placed, self.verdicts) == (other.size, other.placed, other.verdicts)
-    }
-
-    /// The part of the window that the picture covers: left, top, width, height.
-    fn covers(&self, window: [u32; 2]) -> [u32; 4] {
-        let end = |i: usize| {
-            let length = (f64::from(self.size[i]) * self.placed.zoom).ceil();
-            (f64::from(self.placed.origin[i]) + length).clamp(0.0, f64::from(window[i])) as u32
-        };
-        let start = |i: usize| (self.placed.origin[i].max(0) as u32).min(end(i));
-        [start(0), start(1), end(0) - start(0), end(1) - start(1)]
-    }
+/// Draws a picture that lies on the device that draws the window, over this rectangle.
+pub(super) fn shape(rect: Rect, canvas: Arc<Canvas>, draw: Draw) -> PaintCallback {
+    Callback::new_paint_callback(rect, OnDevice { draw, canvas })
 }
 
 /// The shader: what is said above, and the colours of verdicts, those of `plumb render --verdicts`.
 pub(super) fn wgsl() -> String {
     let mut wgsl = String::from(include_str!("screen.wgsl"));
-    wgsl.push_str(
-        "\n// Sure pixels step back; the others have the colour of what decided them.\n\
-         fn verdict(by: u32, bytes: vec3f) -> vec3f {\n    switch by {\n",
-    );
+    let [r, g, b] = OUTLINE;
+    wgsl.push_str(&format!(
+        "\nconst OUTLINE: vec3f = vec3f({r}.0, {g}.0, {b}.0);\nconst BORDER: i32 = {BORDER};\n\
+         const TAPS: f32 = {TAPS}.0;\n\nfn verdict(by: u32, bytes: vec3f) -> vec3f {{\n    switch by {{\n"
+    ));
     for by in DecidedBy::ALL {
-        let [r, g, b] = verdict::color(by);
+        let (keep, [r, g, b]) = shown_as(by);
         let number = by as u8;
-        let line = match by {
-            DecidedBy::Gpu | DecidedBy::Single => {
-                format!(
-                    "        case {number}u: {{ return 0.3 * bytes + 0.3 * vec3f({r}.0, {g}.0, {b}.0); }}\n"
-                )
-            }
-            _ => format!("        case {number}u: {{ return vec3f({r}.0, {g}.0, {b}.0); }}\n"),
-        };
-        wgsl.push_str(&line);
+        wgsl.push_str(&format!(
+            "        case {number}u: {{ return {keep:?} * bytes + vec3f({r:?}, {g:?}, {b:?}); }}\n"
+        ));
     }
     wgsl.push_str("        default: { return vec3f(255.0, 0.0, 255.0); }\n    }\n}\n");
     wgsl
-}
-
-/// A pipeline without vertices that draws a triangle over everything.
-fn pipeline(
-    device: &wgpu::Device,
-    label: &'static str,
-    wgsl: String,
-    entry: &'static str,
-    format: wgpu::TextureFormat,
-) -> wgpu::RenderPipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("corner"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
 
 /// Compiles the shaders for the window, and gives them to egui's renderer.
@@ -188,35 +91,39 @@ pub(super) fn install(state: &RenderState) {
         contents: &[0; 4],
         usage: wgpu::BufferUsages::STORAGE,
     });
-    let entry = if state.target_format.is_srgb() {
-        "linear"
-    } else {
-        "bytes"
-    };
-    let blit = String::from(include_str!("blit.wgsl"));
     state.renderer.write().callback_resources.insert(Screen {
-        pipeline: pipeline(device, "screen", wgsl(), "color", DRAWN),
-        blit: pipeline(device, "blit", blit, entry, state.target_format),
+        pipeline: blit::pipeline(device, "screen", wgsl(), "color", blit::DRAWN),
+        blit: Blit::new(state),
         view,
         nothing,
-        drawn: None,
+        seen: None,
+        last: None,
     });
+}
+
+/// A buffer of these words for the shader to read.
+fn buffer(device: &wgpu::Device, label: &str, words: &[u32]) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents: bytemuck::cast_slice(words),
+        usage: wgpu::BufferUsages::STORAGE,
+    })
 }
 
 impl Screen {
     /// Draws the picture into a texture.
     fn draw(
-        &self,
+        &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         encoder: &mut wgpu::CommandEncoder,
-        draw: &Draw,
+        OnDevice { draw, canvas }: &OnDevice,
         texture: &wgpu::Texture,
     ) {
         let view = ScreenUniforms {
             origin: draw.placed.origin,
             size: draw.size,
-            canvas: draw.canvas.size,
+            canvas: canvas.size,
             marked: draw
                 .outlined
                 .as_ref()
@@ -227,10 +134,18 @@ impl Screen {
             nothing: 0,
         };
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
-        let outlined = draw.outlined.as_ref();
-        let seen = outlined.map_or(&self.nothing, |outlined| &outlined.seen.objects);
-        let chosen = outlined.map_or(&self.nothing, |outlined| &*outlined.chosen);
-        let buffers = [&self.view, &draw.canvas.pixels, seen, chosen];
+        let chosen = draw.outlined.as_ref().map(|outlined| {
+            let seen = &outlined.seen;
+            if !matches!(&self.seen, Some((last, _)) if Arc::ptr_eq(last, seen)) {
+                let words = buffer(device, "objects seen", &seen.objects);
+                self.seen = Some((Arc::clone(seen), words));
+            }
+            buffer(device, "chosen objects", &outlined.chosen)
+        });
+        let seen = self.seen.as_ref().filter(|_| chosen.is_some());
+        let seen = seen.map_or(&self.nothing, |(_, words)| words);
+        let chosen = chosen.as_ref().unwrap_or(&self.nothing);
+        let buffers = [&self.view, &canvas.pixels, seen, chosen];
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -262,37 +177,9 @@ impl Screen {
         pass.set_bind_group(0, &bound, &[]);
         pass.draw(0..3, 0..1);
     }
-
-    /// A texture as large as the window, and how it is read.
-    fn texture(&self, device: &wgpu::Device, window: [u32; 2]) -> (wgpu::Texture, wgpu::BindGroup) {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("drawn picture"),
-            size: wgpu::Extent3d {
-                width: window[0],
-                height: window[1],
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: DRAWN,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("drawn picture"),
-            layout: &self.blit.get_bind_group_layout(0),
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::TextureView(&view),
-            }],
-        });
-        (texture, bound)
-    }
 }
 
-impl CallbackTrait for Draw {
+impl CallbackTrait for OnDevice {
     fn prepare(
         &self,
         device: &wgpu::Device,
@@ -305,23 +192,18 @@ impl CallbackTrait for Draw {
             return Vec::new();
         };
         let window = descriptor.size_in_pixels;
-        let (texture, bound) = match screen.drawn.take() {
-            Some(drawn) if drawn.window == window => {
-                if drawn.draw.is_as(self) {
-                    screen.drawn = Some(drawn);
+        let drawn = match screen.last.take() {
+            Some((last, drawn)) if drawn.size() == window => {
+                if last.draw.is_as(&self.draw) {
+                    screen.last = Some((last, drawn));
                     return Vec::new();
                 }
-                (drawn.texture, drawn.bound)
+                drawn
             }
-            _ => screen.texture(device, window),
+            _ => screen.blit.texture(device, window),
         };
-        screen.draw(device, queue, encoder, self, &texture);
-        screen.drawn = Some(Drawn {
-            draw: self.clone(),
-            window,
-            texture,
-            bound,
-        });
+        screen.draw(device, queue, encoder, self, &drawn.texture);
+        screen.last = Some((self.clone(), drawn));
         Vec::new()
     }
 
@@ -332,11 +214,9 @@ impl CallbackTrait for Draw {
         resources: &CallbackResources,
     ) {
         if let Some(screen) = resources.get::<Screen>()
-            && let Some(drawn) = &screen.drawn
+            && let Some((_, drawn)) = &screen.last
         {
-            pass.set_pipeline(&screen.blit);
-            pass.set_bind_group(0, &drawn.bound, &[]);
-            pass.draw(0..3, 0..1);
+            screen.blit.paint(pass, drawn);
         }
     }
 }
@@ -371,8 +251,6 @@ mod tests {
             .iter()
             .map(|member| member.offset as usize)
             .collect();
-        let blit = naga::front::wgsl::parse_str(include_str!("blit.wgsl")).unwrap();
-        validator.validate(&blit).unwrap();
         assert_eq!(*span as usize, size_of::<ScreenUniforms>());
         assert_eq!(
             offsets,

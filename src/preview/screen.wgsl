@@ -73,8 +73,6 @@ fn shown(pixel: vec2u) -> vec3f {
 // The mean over the area of the picture that a pixel of the window covers, where that is more than one of its pixels.
 // It is the mean of the bytes as they are: they are proportional to the light in the language, without gamma, and
 // several samples are averaged in them too, so a picture at 50 % looks like one of half the size with more samples.
-// Of more than TAPS pixels in a direction, evenly spread ones stand for the others.
-const TAPS: f32 = 8.0;
 fn mean(at: vec2i) -> vec3f {
     let first = vec2f(at - view.origin) / view.zoom;
     let last = min(first + 1.0 / view.zoom, vec2f(view.size));
@@ -109,9 +107,11 @@ fn color(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     if view.marked.x > 0u {
         let inside = is_chosen(at);
-        let border = inside != is_chosen(at + vec2i(2, 0)) | inside != is_chosen(at - vec2i(2, 0))
-            | inside != is_chosen(at + vec2i(0, 2)) | inside != is_chosen(at - vec2i(0, 2));
-        bytes = select(bytes, vec3f(255.0, 140.0, 0.0), border);
+        let across = vec2i(BORDER, 0);
+        let down = vec2i(0, BORDER);
+        let border = inside != is_chosen(at + across) | inside != is_chosen(at - across)
+            | inside != is_chosen(at + down) | inside != is_chosen(at - down);
+        bytes = select(bytes, OUTLINE, border);
     }
     return vec4f(bytes / 255.0, 1.0);
 }

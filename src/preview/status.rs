@@ -13,7 +13,7 @@ pub(super) fn kind(picture: &PreviewPicture) -> String {
         Precision::Certified => String::from("certified"),
         Precision::Fast => String::from("fast"),
     };
-    let times = width.div_ceil(picture.canvas.size[0]);
+    let times = width.div_ceil(picture.pixels.size[0]);
     if times > 1 {
         kind.push_str(&format!(", 1/{times} of the resolution"));
     }

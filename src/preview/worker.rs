@@ -11,12 +11,12 @@ use std::time::{Duration, Instant};
 
 use super::adaptive_resolution::AdaptiveResolution;
 use super::canvases::Canvases;
+use super::draw::Pixels;
 use super::latest::{LatestReceiver, LatestSender, latest};
 use super::priority;
 use super::progress::Progress;
 use super::rendering::Rendering;
 use crate::edit::Changes;
-use crate::frame::DecidedBy;
 use crate::gpu::GpuError;
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
@@ -56,11 +56,9 @@ pub(super) struct PreviewPicture {
     /// Columns and rows as the file says, if that is more than can be shown.
     pub(super) whole: [u32; 2],
     /// The picture, perhaps of fewer pixels.
-    pub(super) canvas: Arc<Canvas>,
-    /// Its bytes, rows from the top.
-    pub(super) rgb: Vec<u8>,
-    /// What decided its pixels, in the same order.
-    pub(super) verdicts: Vec<DecidedBy>,
+    pub(super) pixels: Arc<Pixels>,
+    /// The same where it was made, if the window is drawn there.
+    pub(super) canvas: Option<Arc<Canvas>>,
     /// Whether its bytes are certified.
     pub(super) precision: Precision,
     /// How it was rendered.
@@ -298,9 +296,12 @@ impl Work {
                     number: task.number,
                     scene: Arc::clone(&task.scene),
                     whole: task.whole,
-                    canvas: self.canvases.end(begun, [width, height], &rgb, &verdicts)?,
-                    rgb,
-                    verdicts,
+                    pixels: Arc::new(Pixels {
+                        size: [width, height],
+                        rgb,
+                        verdicts,
+                    }),
+                    canvas: begun,
                     precision,
                     report,
                     seconds: 0.0,

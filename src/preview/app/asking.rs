@@ -2,13 +2,10 @@
 
 use std::sync::Arc;
 
-use eframe::egui_wgpu::wgpu;
-use wgpu::util::DeviceExt as _;
-
 use super::App;
 use crate::certify::verdict::meaning;
+use crate::preview::draw::{ObjectMap, Outlined};
 use crate::preview::inspect::{Answer, Question};
-use crate::preview::screen::{ObjectMap, Outlined};
 use crate::preview::session;
 use crate::scene::EntityId;
 use crate::settings::Precision;
@@ -41,18 +38,7 @@ impl App {
                 size,
                 objects,
             } => {
-                let buffer =
-                    self.window
-                        .device
-                        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                            label: Some("objects seen"),
-                            contents: bytemuck::cast_slice(&objects),
-                            usage: wgpu::BufferUsages::STORAGE,
-                        });
-                let seen = ObjectMap {
-                    size,
-                    objects: buffer,
-                };
+                let seen = ObjectMap { size, objects };
                 self.seen = Some((number, Arc::new(seen)));
                 self.outlined = None;
             }
@@ -138,17 +124,9 @@ impl App {
                 words[(object + 1) / 32] |= 1 << ((object + 1) % 32);
             }
         }
-        let chosen = self
-            .window
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("chosen objects"),
-                contents: bytemuck::cast_slice(&words),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
         self.showing.outlined = Some(Outlined {
             seen: Arc::clone(seen),
-            chosen: Arc::new(chosen),
+            chosen: Arc::new(words),
         });
         self.outlined = Some((*number, entity));
     }
@@ -156,13 +134,15 @@ impl App {
     /// What decided a pixel of the picture, if that is certified.
     pub(super) fn verdict(&self, [x, y]: [u32; 2]) -> Option<&'static str> {
         let picture = self.picture.as_ref()?;
-        let [width, height] = picture.canvas.size;
-        let shown = picture.canvas.size == picture.scene.camera.pixeldim
+        let [width, height] = picture.pixels.size;
+        let shown = picture.pixels.size == picture.scene.camera.pixeldim
             && picture.precision == Precision::Certified
             && x < width
             && y < height;
         let place = (height.checked_sub(1 + y)?) as usize * width as usize + x as usize;
-        let by = shown.then(|| picture.verdicts.get(place)).flatten()?;
+        let by = shown
+            .then(|| picture.pixels.verdicts.get(place))
+            .flatten()?;
         Some(meaning(*by))
     }
 }
