@@ -6,6 +6,9 @@
 #
 # The window of `plumb preview` is tested on Xvfb, an X server without a screen (Linux only). The same goes for that.
 #
+# What `plumb slurm` writes is run by a real Slurm, which the tests start on this machine as root. Where this script may
+# not install one, those tests are left out, and it says so.
+#
 # tests/gpu/drivers.rs compares the pictures of two drivers. The second one, SwiftShader, is taken out of a Debian
 # package (32 MB, nothing is installed) and kept beside what is built. PLUMB_SECOND_DRIVER names the JSON file of
 # another one.
@@ -15,6 +18,9 @@ cd "$(dirname "$0")/.."
 packages="mesa-vulkan-drivers libvulkan1"
 # The server, and those of the libraries that a window loads when it opens that need not come with them.
 window_packages="xvfb libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0"
+
+# Slurm's daemons and commands, and what they sign their messages with.
+slurm_packages="slurm-wlm munge"
 
 say() { printf 'test.sh: %s\n' "$*"; }
 stop() {
@@ -82,6 +88,20 @@ if may_install && ! windows_seem_possible; then
 fi
 if [ "$(uname)" = Linux ] && ! command -v Xvfb >/dev/null; then
     stop "there is no Xvfb, on which the window is tested (Debian, Ubuntu: apt-get install $window_packages; Fedora: dnf install xorg-x11-server-Xvfb libX11-xcb libXcursor libXi libxkbcommon-x11; Arch: pacman -S xorg-server-xvfb libxcursor libxi libxkbcommon-x11)"
+fi
+
+slurm_seems_installed() {
+    (PATH=$PATH:/usr/sbin:/sbin && for name in sbatch slurmctld slurmd munged; do command -v "$name" || exit; done) >/dev/null
+}
+if [ -z "${PLUMB_WITHOUT_SLURM:-}" ]; then
+    if may_install && ! slurm_seems_installed; then
+        install "no Slurm found" "$slurm_packages"
+    fi
+    if [ "$(id -u)" != 0 ] || ! slurm_seems_installed; then
+        PLUMB_WITHOUT_SLURM=1
+        export PLUMB_WITHOUT_SLURM
+        say "ATTENTION: WHAT plumb slurm WRITES IS NOT TESTED: that takes root and a Slurm (Debian, Ubuntu: apt-get install $slurm_packages)"
+    fi
 fi
 
 # Several minutes the first time: someone who looks on sees what is compiled.

@@ -29,6 +29,7 @@ pub mod frame;
 pub mod gpu;
 pub mod image;
 pub mod jitter;
+pub mod parts;
 mod ppm;
 pub mod prepare;
 #[cfg(feature = "preview")]

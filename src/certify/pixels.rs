@@ -255,7 +255,10 @@ impl<'a> PixelDecider<'a> {
             let sure = &eight.sure[..bytes.len() / 3];
             let quick = sure.iter().filter(|sure| **sure).count();
             tally.add(DecidedBy::Single, quick as u64);
-            if quick == LANES && verdicts.is_empty() {
+            if quick == LANES {
+                if let Some(verdicts) = verdicts.get_mut(start..start + sure.len()) {
+                    verdicts.fill(DecidedBy::Single);
+                }
                 continue;
             }
             for (lane, pixel) in bytes.chunks_exact_mut(3).enumerate() {

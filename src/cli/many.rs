@@ -32,7 +32,10 @@ const NAMED: usize = 5;
 /// Renders the scenes.
 pub(crate) fn run(args: &Args) -> Result<Answer> {
     match &args.scenes[..] {
-        [scene] => render::one(scene, &args.options),
+        [scene] => render::one(scene, args),
+        _ if args.parts.job()?.is_some() => {
+            bail!("--part and --resume are of one picture: give one scene")
+        }
         scenes => Run::new(scenes, &args.options)?.run(),
     }
 }

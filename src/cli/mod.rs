@@ -14,8 +14,10 @@ mod doctor;
 mod dump;
 mod end;
 mod inherited;
+mod join;
 mod many;
 mod outputs;
+mod parts;
 mod picture;
 mod place;
 mod preview;
@@ -23,6 +25,7 @@ mod probe;
 mod progress;
 mod render;
 mod say;
+mod slurm;
 mod source;
 mod summary;
 mod values;
@@ -66,6 +69,10 @@ EXAMPLES
   plumb check scenes/*/*.txt            every error of every file
   plumb probe scene.txt 100 40          why a pixel is what it is (y upwards)
   plumb compare a.ppm b.png             are they the same, and if not, where?
+  plumb render scene.txt -o big.png --size 100000x100000 --resume
+                                        goes on where it was stopped
+  plumb slurm scene.txt -o big.png --parts 64 > big.sh
+                                        the same on a cluster (docs/CLUSTER.md)
   plumb doctor                          which GPU would be used, and why
   plumb bench scene.txt --plot out.svg  what each way to render it costs, in time
                                         and in error
@@ -93,7 +100,8 @@ THE SCENE LANGUAGE
 EXIT CODES
   0   done
   1   done, and the answer is no: pictures differ (compare), no adapter that can
-      be used or trusted (doctor), bytes presumed and not proven (render --strict)
+      be used or trusted (doctor), bytes presumed and not proven (--strict), parts
+      missing or wrong (join)
   2   bad input or failure; what is wrong is on stderr
   130 ended by Ctrl-C or SIGTERM; no unfinished file remains
 
@@ -131,6 +139,10 @@ struct Cli {
 enum Command {
     /// Render scenes into pictures: PPM, PNG or EXR
     Render(render::Args),
+    /// Make a picture of its parts, which `plumb render --part` has made; exit 1 if some are missing
+    Join(join::Args),
+    /// Print the script by which a Slurm cluster makes a picture in parts, or many pictures; or submit it
+    Slurm(slurm::Args),
     /// Tell every error of scene files, without touching a GPU
     Check(check::Args),
     /// Print what a scene becomes on its way to the GPU
@@ -180,6 +192,8 @@ fn run() -> u8 {
     let ended = match cli.command {
         None => render::filter(&cli.filter),
         Some(Command::Render(args)) => many::run(&args),
+        Some(Command::Join(args)) => join::run(&args),
+        Some(Command::Slurm(args)) => slurm::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Dump(args)) => dump::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),

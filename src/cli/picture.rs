@@ -66,6 +66,15 @@ impl PictureFile {
         Ok(picture)
     }
 
+    /// Has the picture outlive a power cut once it is finished, where it is a file.
+    pub(crate) fn durable(self) -> Self {
+        // What is opened late is stdout, where nothing stays.
+        Self {
+            output: self.output.map(Output::durable),
+            ..self
+        }
+    }
+
     fn opened(&mut self) -> Result<&mut Output, OutputError> {
         let output = match self.output.take() {
             Some(output) => output,

@@ -21,6 +21,7 @@ use serde::Serialize;
 use super::args::RenderOptions;
 use super::destination::Destination;
 use super::outputs::Outputs;
+use super::parts::{self, PartOptions};
 use super::picture::{self, PictureFile};
 use super::place::Place;
 use super::progress::Progress;
@@ -42,7 +43,12 @@ EXAMPLES
   plumb render scene.txt --verdicts why.png --strict
                                          what decided each pixel; exit 1 if any
                                          byte is not proven
-  plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt")]
+  plumb render scene.txt --debug pix,hit --rows 16..17 2> hits.txt
+  plumb render scene.txt -o big.png --size 100000x100000 --resume
+                                         goes on where it was stopped
+  plumb render scene.txt -o big.png --size 100000x100000 --part 3/64
+                                         one part, anywhere; `plumb join big.png`
+                                         makes the picture of all (docs/CLUSTER.md)")]
 pub(crate) struct Args {
     /// The scene file; `-` is stdin. Of several each becomes a picture
     #[arg(
@@ -57,19 +63,21 @@ picture."
     pub(crate) scenes: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) options: RenderOptions,
+    #[command(flatten)]
+    pub(crate) parts: PartOptions,
 }
 
 /// What is rendered, and under which name.
 pub(crate) struct RenderCommand<'a> {
     /// What errors and reports call the scene.
-    name: &'a str,
+    pub(super) name: &'a str,
     /// The scene's file, if it has one.
     file: Option<&'a Path>,
-    targets: Targets,
-    scene: Scene,
+    pub(super) targets: Targets,
+    pub(super) scene: Scene,
     /// What may surprise in its picture.
-    remarks: Vec<String>,
-    options: &'a RenderOptions,
+    pub(super) remarks: Vec<String>,
+    pub(super) options: &'a RenderOptions,
     /// Its place among many.
     place: Option<&'a Place<'a>>,
 }
@@ -112,12 +120,17 @@ pub(crate) fn file(scene: &Path) -> Option<&Path> {
 }
 
 /// Renders a scene file, alone.
-pub(crate) fn one(scene: &Path, options: &RenderOptions) -> Result<Answer> {
+pub(crate) fn one(scene: &Path, args: &Args) -> Result<Answer> {
+    let options = &args.options;
     start_threads(options);
     let name = source::name(scene);
     let loaded = source::load_with_text(scene)?;
     let targets = Targets::new(options, file(scene))?;
-    RenderCommand::new((&name, file(scene)), loaded, targets, options, None).run()
+    let command = RenderCommand::new((&name, file(scene)), loaded, targets, options, None);
+    match args.parts.job()? {
+        None => command.run(),
+        Some(job) => parts::run(&command, &job),
+    }
 }
 
 /// Renders the scene on stdin, as the notes' program does: lists the model on stderr, writes the picture to stdout.
@@ -151,7 +164,7 @@ pub(crate) fn start_threads(options: &RenderOptions) {
 
 /// The process's devices. They are never closed, and the process does not end by returning from `main` (see `end`): who
 /// has a picture does not wait for a driver that may still be loading.
-fn devices() -> &'static Devices {
+pub(super) fn devices() -> &'static Devices {
     static DEVICES: OnceLock<Devices> = OnceLock::new();
     DEVICES.get_or_init(Devices::new)
 }
@@ -183,7 +196,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// Whether stderr is for talk.
-    fn talks(&self) -> bool {
+    pub(super) fn talks(&self) -> bool {
         self.options.talks(&self.targets.picture)
     }
 
@@ -196,7 +209,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// Refuses what would be regretted: to overwrite what the scene was read from, to fill a terminal with bytes.
-    fn check(&self, target: &Target) -> Result<()> {
+    pub(super) fn check(&self, target: &Target) -> Result<()> {
         if target.is_stdout() {
             picture::check_stdout()?;
         }
@@ -314,7 +327,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// What the picture's file tells of how it was made.
-    fn metadata(&self, settings: &Settings) -> Metadata {
+    pub(super) fn metadata(&self, settings: &Settings) -> Metadata {
         let scene = self
             .file
             .and_then(Path::file_name)
@@ -323,7 +336,7 @@ impl<'a> RenderCommand<'a> {
     }
 
     /// The error, with what would mend it.
-    fn explain(&self, error: render::Error) -> anyhow::Error {
+    pub(super) fn explain(&self, error: render::Error) -> anyhow::Error {
         match error {
             render::Error::Gpu(plumb::gpu::GpuError::NoAdapter) => {
                 anyhow!(

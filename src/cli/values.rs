@@ -96,6 +96,30 @@ pub(crate) fn rows(text: &str) -> Result<Rows, String> {
     Ok(Rows { start, end })
 }
 
+/// Which part of a picture, from 1, and of how many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Share {
+    pub(crate) number: u32,
+    pub(crate) parts: u32,
+}
+
+/// `3/16`.
+pub(crate) fn share(text: &str) -> Result<Share, String> {
+    let numbers = text.split_once('/');
+    let numbers = numbers.and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    numbers
+        .filter(|(number, parts)| {
+            (1..=MOST_PIXELS).contains(parts) && (1..=*parts).contains(number)
+        })
+        .map(|(number, parts)| Share { number, parts })
+        .ok_or_else(|| "say which part and of how many, like 3/16: part 1 is at the top".to_owned())
+}
+
+/// Into how many parts a picture is cut.
+pub(crate) fn parts(text: &str) -> Result<u32, String> {
+    whole(1..=MOST_PIXELS)(text)
+}
+
 /// A finite number.
 pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
@@ -159,6 +183,27 @@ mod tests {
         }
         assert_eq!((pixel("-1"), pixel("7")), (Ok(-1), Ok(7)));
         assert!(pixel("1.5").is_err() && pixel("x").is_err());
+    }
+
+    #[test]
+    fn shares() {
+        let (number, parts) = (3, 16);
+        assert_eq!(share("3/16"), Ok(Share { number, parts }));
+        assert!(share("1/1").is_ok() && share("16/16").is_ok());
+        for bad in [
+            "",
+            "3",
+            "/",
+            "0/16",
+            "17/16",
+            "1/0",
+            "-1/2",
+            "1/2/3",
+            "1/1000001",
+            "1.5/2",
+        ] {
+            assert!(share(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! A file that is no picture, such as a plot: written like one, whole or not at all.
+//! A file that is no picture, such as a plot or a part of a picture: written like one, whole or not at all.
 
-use std::io::Write as _;
+use std::io::{self, Write};
 
 use super::sink::Sink;
 use super::{OutputError, Target};
@@ -29,13 +29,32 @@ impl Document {
     /// # Errors
     /// If writing fails; then nothing is there that was not there before.
     pub fn write(mut self, bytes: &[u8]) -> Result<(), OutputError> {
-        let written = self.sink.write_all(bytes);
-        written
-            .and_then(|()| self.sink.commit())
-            .map_err(|source| OutputError::Write {
+        match self.append(bytes) {
+            Ok(()) => self.finish(false),
+            Err(source) => Err(OutputError::Write {
                 target: self.target,
                 source,
-            })
+            }),
+        }
+    }
+
+    /// Writes more of it.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.sink.write_all(bytes)
+    }
+
+    /// All of it is written: gives it its name. A `durable` one outlives a power cut from here on.
+    ///
+    /// # Errors
+    /// If what was still to be written cannot be, or the name not given; then nothing is there that was not there
+    /// before.
+    pub fn finish(self, durable: bool) -> Result<(), OutputError> {
+        let Self { target, sink } = self;
+        sink.commit(durable)
+            .map_err(|source| OutputError::Write { target, source })
     }
 }
 

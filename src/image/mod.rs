@@ -33,9 +33,9 @@ use std::path::Path;
 pub use compare::{Comparison, SizesDiffer, compare, difference};
 pub use document::Document;
 pub use error::OutputError;
-pub use output::{Finished, HASH_KEY, Metadata, Output};
+pub use output::{Finished, HASH_KEY, Metadata, Output, check_size};
 pub use read::{Picture, ReadError, read, read_with_remark};
-pub use sink::remove_unfinished;
+pub use sink::{remove_left, remove_unfinished};
 pub use target::Target;
 
 /// The formats that pictures are written in.

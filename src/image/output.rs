@@ -133,6 +133,35 @@ pub struct Finished {
     pub bytes: u64,
 }
 
+fn size_error(format: Format, width: u32, rows: u32, problem: String) -> OutputError {
+    OutputError::Size {
+        width,
+        rows,
+        format,
+        problem,
+    }
+}
+
+/// Whether the format can hold a picture of this size.
+///
+/// # Errors
+/// [`OutputError::Size`] if it cannot.
+pub fn check_size(format: Format, width: u32, rows: u32) -> Result<(), OutputError> {
+    let problem = if width == 0 || rows == 0 {
+        "it has no pixels".into()
+    } else if format == Format::Png && width.max(rows) > PNG_MOST {
+        format!("the most is {PNG_MOST} each way")
+    } else if format == Format::Exr && u64::from(width) * u64::from(rows) > exr::MAX_PIXELS {
+        format!(
+            "it is kept in memory, {} million pixels at most; PNG and PPM have no such limit",
+            exr::MAX_PIXELS / 1_000_000
+        )
+    } else {
+        return Ok(());
+    };
+    Err(size_error(format, width, rows, problem))
+}
+
 /// One picture on its way. [`finish`](Output::finish) gives it its name; dropped without, nothing remains.
 pub struct Output {
     target: Target,
@@ -146,6 +175,7 @@ pub struct Output {
     /// The row above which the next band must end, counted from the bottom; any before the first.
     next: Option<u32>,
     failed: bool,
+    durable: bool,
 }
 
 enum Encoder {
@@ -200,37 +230,20 @@ impl Output {
         metadata: Metadata,
     ) -> Result<Self, OutputError> {
         metadata.check()?;
-        let size = |problem: String| OutputError::Size {
-            width,
-            rows,
-            format,
-            problem,
-        };
-        if width == 0 || rows == 0 {
-            return Err(size("it has no pixels".into()));
-        }
+        check_size(format, width, rows)?;
         // The encoder is made in memory first, so that the file is created only when nothing but the system can fail.
         let mut encoder = match format {
             Format::Ppm => Encoder::Ppm,
-            Format::Png if width.max(rows) > PNG_MOST => {
-                return Err(size(format!("the most is {PNG_MOST} each way")));
-            }
             Format::Png => Encoder::Png(Box::new(
                 Png::new(width, rows, &metadata.entries).map_err(|source| OutputError::Write {
                     target: target.clone(),
                     source,
                 })?,
             )),
-            Format::Exr if u64::from(width) * u64::from(rows) > exr::MAX_PIXELS => {
-                return Err(size(format!(
-                    "it is kept in memory, {} million pixels at most; PNG and PPM have no such limit",
-                    exr::MAX_PIXELS / 1_000_000
-                )));
-            }
-            Format::Exr => Encoder::Exr(
-                Exr::new(width, rows)
-                    .map_err(|_| size("there is not enough memory to keep it".into()))?,
-            ),
+            Format::Exr => Encoder::Exr(Exr::new(width, rows).map_err(|_| {
+                let problem = "there is not enough memory to keep it".into();
+                size_error(format, width, rows, problem)
+            })?),
         };
         let mut to = Counted {
             sink: Sink::open(&target)?,
@@ -256,7 +269,17 @@ impl Output {
             written: 0,
             next: None,
             failed: false,
+            durable: false,
         })
+    }
+
+    /// Has [`finish`](Output::finish) wait until the system has put the file where it outlives a power cut.
+    #[must_use]
+    pub fn durable(self) -> Self {
+        Self {
+            durable: true,
+            ..self
+        }
     }
 
     /// Hashes the picture whatever its format is; to be asked for before the first rows are written.
@@ -363,6 +386,7 @@ impl Output {
             mut metadata,
             written,
             failed,
+            durable,
             ..
         } = self;
         if failed || written != rows {
@@ -388,7 +412,7 @@ impl Output {
             }
         };
         let bytes = to.bytes;
-        match ended.and_then(|()| to.sink.commit()) {
+        match ended.and_then(|()| to.sink.commit(durable)) {
             Ok(()) => Ok(Finished { sha256, bytes }),
             Err(source) => Err(OutputError::Write { target, source }),
         }

@@ -12,8 +12,10 @@
 //! - Devices, named pipes and stdout are written through.
 //!
 //! The files beside are removed when a [`Sink`] is dropped, and by [`remove_unfinished`] when the process is about to
-//! end without dropping anything. Only a process that is killed outright leaves one: `.plumb-…`.
+//! end without dropping anything. Only a process that is killed outright leaves one, `.plumb-NAME-…`; who takes over
+//! its work removes that ([`remove_left`]).
 
+use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -118,8 +120,9 @@ impl Sink {
         !matches!(self.ending, Ending::Through)
     }
 
-    /// Everything written becomes the target.
-    pub(super) fn commit(self) -> io::Result<()> {
+    /// Everything written becomes the target. A `durable` one outlives a power cut from here on: the system has put it
+    /// where it stays, name and all.
+    pub(super) fn commit(self, durable: bool) -> io::Result<()> {
         let mut file = self
             .writer
             .into_inner()
@@ -129,14 +132,19 @@ impl Sink {
             // Closed before it is renamed: some network file systems keep the last errors, and the last bytes, for
             // then.
             Ending::Rename(unfinished, end) => {
+                if durable {
+                    file.sync_all()?;
+                }
                 drop(file);
-                unfinished.rename(&end)
+                unfinished.rename(&end)?;
+                if durable { sync_folder(&end) } else { Ok(()) }
             }
             Ending::Copy(unfinished, mut old) => {
                 // The lock is held until the copy is whole, so that Ctrl-C waits for it.
                 let registry = registry();
                 let copied = copy_into(&mut file, &mut old);
                 drop(registry);
+                let copied = copied.and_then(|()| if durable { old.sync_all() } else { Ok(()) });
                 drop(file);
                 drop(unfinished);
                 copied
@@ -155,11 +163,24 @@ impl Write for Sink {
     }
 }
 
+/// Has the system keep the name of a file.
+#[cfg(unix)]
+fn sync_folder(end: &Path) -> io::Result<()> {
+    File::open(end.parent().unwrap_or(Path::new(".")))?.sync_all()
+}
+
+/// Elsewhere folders cannot be opened; the system sees to their names itself.
+#[cfg(not(unix))]
+fn sync_folder(_end: &Path) -> io::Result<()> {
+    Ok(())
+}
+
 /// A new file in the folder of `end`, with the mode that any new file gets.
 fn beside(path: &Path, end: &Path) -> Result<(File, Unfinished), OutputError> {
     let folder = end.parent().unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".plumb-");
+    let prefix = prefix(end);
+    builder.prefix(&prefix);
     #[cfg(unix)]
     {
         // The umask is taken off by the system, as for any file; tempfile alone would make it private.
@@ -177,6 +198,43 @@ fn beside(path: &Path, end: &Path) -> Result<(File, Unfinished), OutputError> {
         .into_parts();
     registry.unfinished.push(temporary.to_path_buf());
     Ok((file, Unfinished(Some(temporary))))
+}
+
+/// What every file beside begins with.
+const BESIDE: &str = ".plumb-";
+
+/// The longest name that is told in the name of a file beside: names have 255 bytes on most systems.
+const MOST_TOLD: usize = 200;
+
+/// What the name of a file beside `end` begins with; letters and digits by chance follow.
+fn prefix(end: &Path) -> OsString {
+    let mut prefix = OsString::from(BESIDE);
+    let name = end.file_name().filter(|name| name.len() <= MOST_TOLD);
+    if let Some(name) = name {
+        prefix.push(name);
+        prefix.push("-");
+    }
+    prefix
+}
+
+/// Removes the files beside that processes which were killed outright have left in a folder, of the names that
+/// `is_ours`. Those of processes that still write are removed too, so nobody else may be writing them.
+///
+/// # Errors
+/// If the folder cannot be read; a file that cannot be removed stays.
+pub fn remove_left(folder: &Path, is_ours: &dyn Fn(&str) -> bool) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let told = name
+            .to_str()
+            .and_then(|name| name.strip_prefix(BESIDE)?.rsplit_once('-'));
+        if told.is_some_and(|(name, _)| is_ours(name)) {
+            // It is in nobody's way.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+    Ok(())
 }
 
 /// Gives `file` the mode of the file it is to replace. False if that is not all that tells the two apart, so that

@@ -6,6 +6,8 @@ mod bad_light;
 mod basics;
 mod bench;
 mod certified;
+#[cfg(target_os = "linux")]
+mod cluster;
 mod desk;
 mod endings;
 mod errors;
@@ -15,3 +17,6 @@ mod inspect;
 mod lit;
 mod many;
 mod options;
+mod parts;
+#[cfg(target_os = "linux")]
+mod slurm;

@@ -93,7 +93,7 @@ fn option_values_that_make_no_sense_are_refused_with_the_mend() {
         (&["--debug", "pix,hot"], "hit"),
         (&["-o", "a.jpg"], ".png"),
         (&["-o", "missing/a.ppm"], "does not exist"),
-        (&["-o", "."], "folder"),
+        (&["-o", "missing/"], "mkdir -p missing/"),
     ];
     for (args, mend) in cases {
         desk.run(&[&["render", "room.txt"], args].concat())

@@ -1,0 +1,443 @@
+//! `plumb render --part` and `--resume`: pictures made in parts, here and elsewhere, now and later.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use plumb::image::{Finished, Format, Metadata, OutputError, Target, check_size};
+use plumb::parts::{Cut, Folder, Identity, PartError, Splitter, State, Survey, Work};
+use plumb::probe::digits::count;
+use plumb::render::{self, Backend, Report, Settings};
+use serde::Serialize;
+
+use super::args::{PrecisionName, RenderOptions};
+use super::join::{self, Whole};
+use super::progress::Progress;
+use super::render::{RenderCommand, devices};
+use super::summary::{summary, told};
+use super::values::{Share, share};
+use super::{Answer, SOFTWARE, say};
+
+/// Which parts of a picture are made, and where they lie.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct PartOptions {
+    /// Only part K of N, from 1 at the top, as a file of its own for `plumb join`; one that is there and right is kept
+    #[arg(
+        long,
+        value_name = "K/N",
+        value_parser = share,
+        conflicts_with = "resume",
+        long_help = "\
+Only part K of N of the picture, from 1 at the top, as a file of its own in the folder of --parts-in: whole there, or \
+not there. `plumb join` makes the picture of all parts. A part that is there and right is not made again.
+
+Parts are cut such that each is about as much work, which every machine finds out by itself and alike; so parts can be \
+made anywhere, in any order, on whatever there is. docs/CLUSTER.md shows it with Slurm and others."
+    )]
+    part: Option<Share>,
+    /// Make the picture in parts by itself, and go on where an earlier run was stopped
+    #[arg(
+        long,
+        long_help = "\
+Make the picture in parts, and join them when all are there. Whatever ends the program (Ctrl-C, a full disk, a power \
+cut), the same command goes on behind the last part that was whole. The parts lie in the folder of --parts-in, take as \
+much space again as the picture, and are removed when the picture is whole."
+    )]
+    resume: bool,
+    /// The folder of the parts; OUT.parts without
+    #[arg(long, value_name = "DIR")]
+    parts_in: Option<PathBuf>,
+}
+
+/// What is to be made in parts.
+pub(crate) struct Job<'a> {
+    /// One part, or all that are missing, and the picture of them.
+    part: Option<Share>,
+    folder: Option<&'a Path>,
+}
+
+impl PartOptions {
+    /// What is to be made in parts, if anything.
+    pub(crate) fn job(&self) -> Result<Option<Job<'_>>> {
+        let folder = self.parts_in.as_deref();
+        let job = |part| Ok(Some(Job { part, folder }));
+        match (self.part, self.resume) {
+            (Some(part), _) => job(Some(part)),
+            (None, true) => job(None),
+            (None, false) if folder.is_some() => {
+                bail!("--parts-in is where --part and --resume have their parts: give one of them")
+            }
+            (None, false) => Ok(None),
+        }
+    }
+}
+
+/// The folder of a picture's parts, if none is named: `picture.png.parts`.
+pub(crate) fn folder_of(output: &Path) -> PathBuf {
+    let mut name = output.as_os_str().to_owned();
+    name.push(".parts");
+    name.into()
+}
+
+/// Refuses what parts cannot have.
+pub(crate) fn refuse(options: &RenderOptions) -> Result<()> {
+    if options.precision == PrecisionName::Fast {
+        bail!(
+            "--precision fast gives other bytes on every device, so its parts would not fit together: leave it out"
+        );
+    }
+    if options.verdicts.is_some() || options.shown().is_some() {
+        bail!("--verdicts and --debug are of pictures that are made in one piece: leave them out");
+    }
+    Ok(())
+}
+
+/// A picture in parts.
+struct Picture<'a> {
+    command: &'a RenderCommand<'a>,
+    target: Target,
+    format: Format,
+    settings: Settings,
+    folder: Folder,
+    cut: Cut,
+    identity: Identity,
+}
+
+/// What `--json` prints of a part.
+#[derive(Serialize)]
+struct PartJson<'a> {
+    software: &'a str,
+    scene: &'a str,
+    output: String,
+    part: u32,
+    parts: u32,
+    bytes: u64,
+    presumed: u64,
+    /// Whether it was made now; else it was there.
+    made: bool,
+    #[serde(flatten)]
+    report: Option<&'a Report>,
+}
+
+/// What `--json` prints of a picture.
+#[derive(Serialize)]
+struct PictureJson<'a> {
+    scene: &'a str,
+    /// Parts that were made now.
+    made: usize,
+    #[serde(flatten)]
+    whole: &'a Whole,
+}
+
+/// Parts so large that their files are about 64 MiB, or that they take about half a second on two cores; never too many.
+const PART_BYTES: u64 = 64 << 20;
+const PART_WORK: f64 = 1e6;
+const MOST_PARTS: u32 = 10_000;
+
+/// Makes a part, or all and the picture of them.
+pub(crate) fn run(command: &RenderCommand<'_>, job: &Job<'_>) -> Result<Answer> {
+    let start = Instant::now();
+    let picture = Picture::new(command, job)?;
+    let folder = picture.folder.path();
+    fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    match job.part {
+        Some(part) => picture.part(part.number, start),
+        None => picture.resume(start),
+    }
+}
+
+impl<'a> Picture<'a> {
+    fn new(command: &'a RenderCommand<'a>, job: &Job<'_>) -> Result<Self> {
+        let (scene, options) = (&command.scene, command.options);
+        refuse(options)?;
+        let target = command.targets.picture.clone();
+        let format = target.format()?;
+        let (Some(stem), false) = (target.path().file_stem(), target.is_stdout()) else {
+            bail!("parts are called by their picture's name: give one with -o");
+        };
+        command.check(&target)?;
+        let [width, height] = scene.camera.pixeldim;
+        let mut settings = options.settings(scene, format.wants_values())?;
+        // What is presumed is counted part by part.
+        settings.verdicts = true;
+        let rows = settings.rows_of(height);
+        check_size(format, width, rows.len() as u32)?;
+        let parts = job.part.map(|part| part.parts);
+        let work = Work::estimate(scene, &settings, &rows, parts.unwrap_or(1));
+        let parts = parts.unwrap_or_else(|| {
+            let pixels = u64::from(width) * rows.len() as u64;
+            let bytes = pixels * if settings.values { 15 } else { 3 };
+            let rays = work.of_a_sample() * pixels as f64 * f64::from(settings.samples);
+            let parts = (bytes / PART_BYTES).max((rays / PART_WORK) as u64);
+            parts.clamp(1, u64::from(MOST_PARTS.min(rows.len() as u32))) as u32
+        });
+        let cut = Cut::new(rows, &work, parts)?;
+        let folder = job.folder.map(Path::to_owned);
+        let folder = folder.unwrap_or_else(|| folder_of(target.path()));
+        Ok(Self {
+            folder: Folder::new(folder, stem.to_owned()),
+            identity: Identity::new(scene, &settings, &cut),
+            command,
+            target,
+            format,
+            settings,
+            cut,
+        })
+    }
+
+    /// What the picture's file tells of how it was made, but for the program's name, which is that of who joins.
+    fn texts(&self) -> Metadata {
+        let mut texts = self.command.metadata(&self.settings);
+        texts.entries.retain(|(key, _)| key != join::SOFTWARE_KEY);
+        texts
+    }
+
+    /// Makes a part, unless it is there and right.
+    fn part(&self, number: u32, start: Instant) -> Result<Answer> {
+        let parts = self.cut.parts();
+        let path = self.folder.part(number, parts);
+        let json =
+            |report: Option<&Report>, presumed| self.part_json(number, &path, presumed, report);
+        match self.folder.check(number, &self.cut, self.identity) {
+            Ok(part) => {
+                if self.command.talks() && !self.command.options.json {
+                    say::note(&format!(
+                        "{} is there and right: it is not made again",
+                        path.display()
+                    ));
+                }
+                json(None, part.presumed())?;
+                return Ok(self.answer(part.presumed()));
+            }
+            Err(PartError::Missing) => {}
+            // What the system does not let us read it will not let us replace either; trying tells why.
+            Err(wrong) => self.note(&format!("{}: {wrong}; it is made again", path.display())),
+        }
+        let report = self.render(number, number)?;
+        self.tell(&report);
+        json(Some(&report), report.presumed)?;
+        if self.command.talks() && !self.command.options.json {
+            let target = Target::Path(path.clone());
+            let summary = summary(&target, &report, start.elapsed());
+            say::talk(&format!("{}\n", plumb::diagnostic::visible_text(&summary)));
+        }
+        Ok(self.answer(report.presumed))
+    }
+
+    fn part_json(
+        &self,
+        part: u32,
+        path: &Path,
+        presumed: u64,
+        report: Option<&Report>,
+    ) -> Result<()> {
+        if !self.command.options.json {
+            return Ok(());
+        }
+        let json = PartJson {
+            software: SOFTWARE,
+            scene: self.command.name,
+            output: path.display().to_string(),
+            part,
+            parts: self.cut.parts(),
+            bytes: fs::metadata(path).map_or(0, |file| file.len()),
+            presumed,
+            made: report.is_some(),
+            report,
+        };
+        say::data(&(serde_json::to_string_pretty(&json)? + "\n"))
+    }
+
+    /// Makes the parts that are missing, then the picture.
+    fn resume(&self, start: Instant) -> Result<Answer> {
+        let lock = self.lock()?;
+        self.folder.remove_unfinished()?;
+        join::remove_left(&self.target)?;
+        let parts = self.cut.parts();
+        let mut survey = self.folder.survey(parts, Some(self.identity));
+        survey.check_rows();
+        let missing = self.missing(&survey);
+        for run in missing.chunk_by(|a, b| a + 1 == *b) {
+            if let [first, ..] = run {
+                let report = self.render(*first, first + run.len() as u32 - 1)?;
+                self.tell(&report);
+            }
+        }
+        let survey = self.folder.survey(parts, Some(self.identity));
+        let options = self.command.options;
+        let joined = join::write(
+            &survey,
+            &self.target,
+            self.format,
+            options.json,
+            self.command.talks(),
+        )?;
+        let Some(finished) = joined else {
+            bail!("parts were damaged while they were joined; the same command makes them again");
+        };
+        drop(lock);
+        self.folder.remove(parts)?;
+        self.report(&survey, missing.len(), &finished, start)?;
+        Ok(self.answer(survey.presumed()))
+    }
+
+    /// The numbers of the parts that are missing; says what there is.
+    fn missing(&self, survey: &Survey) -> Vec<u32> {
+        for (number, state) in (1..).zip(survey.states()) {
+            if let State::Wrong(wrong @ (PartError::Wrong(_) | PartError::Io(_))) = state {
+                let path = self.folder.part(number, self.cut.parts());
+                self.note(&format!("{}: {wrong}; it is made again", path.display()));
+            }
+        }
+        let missing = survey.missing();
+        let there = survey.states().len() - missing.len();
+        if there > 0 {
+            let parts = count(survey.states().len(), "part");
+            self.note(&format!("{there} of {parts} are there already"));
+        }
+        missing
+    }
+
+    /// Keeps two processes from making the same picture in the same folder.
+    fn lock(&self) -> Result<Lock> {
+        let path = self.folder.path().join(".plumb-lock");
+        let failed = || format!("cannot write {}", path.display());
+        let file = File::create(&path).with_context(failed)?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => bail!(
+                "another plumb makes this picture: {} is locked",
+                path.display()
+            ),
+            // Some file systems have no locks.
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(Lock { path, file }),
+        }
+    }
+
+    /// Renders parts that follow each other. Where a device was wrong, the CPU makes all of them again.
+    fn render(&self, first: u32, last: u32) -> Result<Report> {
+        let rendered = self.attempt(first, last, self.settings.backend);
+        let (Err(render::Error::Revoked(revoked)), made) = rendered else {
+            return self.explained(rendered.0);
+        };
+        for number in made {
+            fs::remove_file(self.folder.part(number, self.cut.parts()))?;
+        }
+        let (rendered, _) = self.attempt(first, last, Backend::Cpu);
+        Ok(Report {
+            revoked: Some(revoked),
+            ..self.explained(rendered)?
+        })
+    }
+
+    fn explained(&self, rendered: Result<Report, render::Error>) -> Result<Report> {
+        match rendered {
+            Ok(report) => Ok(report),
+            // An error of a part's file comes back as it was.
+            Err(render::Error::Emit(source)) => Err(match source.downcast::<OutputError>() {
+                Ok(error) => error.into(),
+                Err(source) => {
+                    let path = self.folder.path().to_owned();
+                    OutputError::Open { path, source }.into()
+                }
+            }),
+            Err(error) => Err(self.command.explain(error)),
+        }
+    }
+
+    /// Renders the parts from `first` to `last`; returns which of them are there.
+    fn attempt(
+        &self,
+        first: u32,
+        last: u32,
+        backend: Backend,
+    ) -> (Result<Report, render::Error>, Vec<u32>) {
+        let scene = &self.command.scene;
+        let rows = self.cut.rows(last).start..self.cut.rows(first).end;
+        let settings = Settings {
+            rows: Some(rows.clone()),
+            backend,
+            ..self.settings.clone()
+        };
+        let what = (scene, &self.settings);
+        let mut splitter = Splitter::new(&self.folder, &self.cut, what, self.texts(), first);
+        // A name that cannot be written costs no rendering.
+        if let Err(error) = splitter.open() {
+            return (Err(io::Error::other(error).into()), Vec::new());
+        }
+        let mut progress = Progress::new(rows.len() as u64, self.command.talks());
+        let rendered = render::render_with(scene, &settings, devices(), &mut |band| {
+            splitter.write(band)?;
+            progress.add(band.rows.len() as u64);
+            Ok(())
+        });
+        progress.clear();
+        (rendered, splitter.made().to_vec())
+    }
+
+    fn note(&self, text: &str) {
+        if self.command.talks() {
+            say::note(text);
+        }
+    }
+
+    /// What has to be said of a rendering.
+    fn tell(&self, report: &Report) {
+        self.command
+            .remarks
+            .iter()
+            .for_each(|remark| self.note(remark));
+        told(report).iter().for_each(|line| self.note(line));
+    }
+
+    fn answer(&self, presumed: u64) -> Answer {
+        if self.command.options.strict && presumed > 0 {
+            Answer::No
+        } else {
+            Answer::Yes
+        }
+    }
+
+    fn report(
+        &self,
+        survey: &Survey,
+        made: usize,
+        finished: &Finished,
+        start: Instant,
+    ) -> Result<()> {
+        let whole = Whole::new(survey, &self.target, self.format, finished);
+        if self.command.options.json {
+            let json = PictureJson {
+                scene: self.command.name,
+                made,
+                whole: &whole,
+            };
+            return say::data(&(serde_json::to_string_pretty(&json)? + "\n"));
+        }
+        if self.command.talks() {
+            let parts = survey.states().len();
+            let made = format!("{made} of them made now");
+            say::talk(&format!(
+                "{}\n",
+                whole.summary(&count(parts, "part"), &made, start.elapsed())
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A file that is locked while it is there.
+struct Lock {
+    path: PathBuf,
+    file: File,
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Whoever comes next makes one of its own; where this fails, the lock ends with the process.
+        let _ = fs::remove_file(&self.path);
+        let _ = self.file.unlock();
+    }
+}
