@@ -282,7 +282,7 @@ impl RenderOptions {
     /// Whether stderr is for talk where the picture goes there: not if silence was asked for, nor if the report is the
     /// only thing to be there.
     pub(crate) fn talks(&self, picture: &Target) -> bool {
-        !self.quiet && !(self.json && picture.is_stdout())
+        !(self.quiet || self.json && picture.is_stdout())
     }
 
     /// What `--debug` asks for, if anything.

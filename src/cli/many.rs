@@ -113,7 +113,7 @@ impl<'a> Run<'a> {
     fn run(self) -> Result<Answer> {
         render::start_threads(self.options);
         let started = Instant::now();
-        let talks = !self.options.quiet && !(self.options.json && self.to_stdout);
+        let talks = !(self.options.quiet || self.options.json && self.to_stdout);
         let queue = Queue::new(self.scenes.len(), talks);
         thread::scope(|scope| {
             for _ in 1..AT_ONCE {

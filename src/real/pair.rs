@@ -148,7 +148,7 @@ impl Div for Pair {
         let left = (((self.high - product) - rest) + self.low) - quotient * o.low;
         // This difference may be much smaller than its terms, so the bound is made as large as it may be first.
         let least = o.high.abs() - o.error * Bounded::GROW;
-        if !(least > 0.0) {
+        if least.is_nan() || least <= 0.0 {
             return Self::UNKNOWN;
         }
         let off = (quotient.abs() + TINY) * o.error + (self.error + TINY);
@@ -196,7 +196,7 @@ impl Real for Pair {
 
     #[inline]
     fn sqrt(self) -> Self {
-        if !(self.high > 0.0) {
+        if self.high <= 0.0 {
             // What is enclosed and not negative is at most twice the error.
             return Self {
                 error: (2.0 * self.error + TINY).sqrt(),

@@ -192,6 +192,14 @@ fn what_decided_each_pixel_is_painted_over_the_picture() {
     let size = format!("{}x{}", SIZE[0], SIZE[1]);
     let mut program = open(&display, &path, &["--size", &size]);
     let good = picture(&scene);
+    wait_for_picture(&mut program, "a picture", &good);
+    // So large that the legend lies beside the picture, not on it.
+    program.window.key('1'.into(), &[]);
+    program.window.resize(1400, 900);
+    // The lists are at the new right edge when that was drawn.
+    program.wait_for("the room", |shot| {
+        shot.dimensions() == (1400, 900) && shot.get_pixel(1397, 897).0 != [0; 3]
+    });
     let (x, y) = wait_for_picture(&mut program, "the picture", &good);
     program.window.key('v'.into(), &[]);
     program.wait_for("the verdicts", |shot| {
