@@ -94,8 +94,8 @@ impl Bounded {
     }
 }
 
-/// What a product's bound, computed by five operations, is larger by.
-pub(super) const POWER_GROWTH: f64 = 1.0 + 16.0 * U;
+/// What a product's bound, computed by five operations, is larger by: 16u.
+pub(super) const POWER_GROWTH: f64 = 1.0 + 1.0 / 562_949_953_421_312.0;
 
 /// What the factors' errors make of that of their product.
 #[inline(always)]

@@ -10,6 +10,8 @@ use plumb::shader::bounds::{Constant, LITERAL, NAMED, ROUNDING};
 /// Files in which a constant that is not a whole number belongs to a bound.
 const SOURCES: &[&str] = &[
     "src/real/bounded.rs",
+    "src/real/pair.rs",
+    "src/prepare/boxes.rs",
     "src/prepare/screen_grid.rs",
     "src/prepare/bvh.rs",
     "src/cpu/pixel.rs",

@@ -167,6 +167,30 @@ fn a_bound_that_is_too_small_is_noticed() {
     assert!(outside::<Bounded>(random(), 0.3, 20_000).0 > 0);
 }
 
+/// Of a number that may be as large as its bound, 28 squarings are known only by the power of that bound.
+#[test]
+fn bounds_of_powers_do_not_shrink() {
+    let error = f64::from_bits(0x3ff0_0000_24f5_8aa0);
+    let base = |grown: bool| {
+        let start = Bounded {
+            value: f64::MIN_POSITIVE,
+            error,
+        };
+        (0..28).fold(start, |x, _| {
+            let square = x * x;
+            if grown { square.grown() } else { square }
+        })
+    };
+    let exact = (0..28).fold(ratio(error), |x, _| {
+        // Rounded down by much less than f64 does.
+        let square = &x * &x * ratio(2_f64.powi(200));
+        Ratio::from(square.canonicalize().floor()) / ratio(2_f64.powi(200))
+    });
+    let holds = |x: Bounded| ratio(x.error * Bounded::GROW) >= exact;
+    assert!(holds(base(true)));
+    assert!(!holds(base(false)), "the growth is needed");
+}
+
 #[test]
 fn underflow_and_overflow_decide_nothing_wrong() {
     let tiny = Bounded::exact(5e-324);
