@@ -56,7 +56,7 @@ fn a_killed_rendering_goes_on() {
 #[test]
 fn a_full_disk_costs_a_part() {
     let desk = Desk::new();
-    let options = "--backend cpu --size 400x3000 --samples 16";
+    let options = "--backend cpu --size 400x3000 --samples 4";
     let line = |limit: &str, output: &str, more: &str| {
         format!(
             "trap '' XFSZ; ulimit -f {limit}; exec {} render room.txt -o {output} {options} {more}",
