@@ -7,16 +7,15 @@ use std::time::{Duration, Instant};
 use super::Settings;
 use super::bag::Bag;
 use super::report::Told;
-use crate::certify::lanes::Lanes;
+use crate::certify::lanes::{LANES, Lanes};
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
-use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::shader::pack::Packed;
 
 /// So many pixels are tried, or as many as this time allows, before it is said how long a picture will take.
-const TRIED_PIXELS: u32 = 128;
+const TRIED_PIXELS: u64 = 512;
 const TRYING: Duration = Duration::from_millis(2);
 
 /// Everything that workers need to know.
@@ -98,29 +97,33 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// How long the CPU would take for the whole picture, pixel by pixel, by a few pixels from all over it.
+    /// How long the CPU would take for the whole picture, by a few pixels from all over it, made as those of bands are.
     pub(super) fn seems_to_take(&self) -> Duration {
         let threads = self.on_threads(rayon::current_num_threads);
+        let lanes = self.lanes();
         let [width, rows] = [u64::from(self.width), self.rows.len() as u64];
-        let started = Instant::now();
-        let mut tried = 0;
-        while tried < TRIED_PIXELS && started.elapsed() < TRYING {
+        let mut started = Instant::now();
+        let (mut strips, mut tried) = (0, 0);
+        while tried < TRIED_PIXELS && started.elapsed() < TRYING && !self.bag.is_over() {
             // Multiples of the plastic ratio's inverse and its square are spread evenly, however many there are.
             let at =
-                |step: f64, of: u64| ((f64::from(tried + 1) * step).fract() * of as f64) as u64;
+                |step: f64, of: u64| ((f64::from(strips + 1) * step).fract() * of as f64) as u64;
             let (column, row) = (at(0.754_877_67, width), at(0.569_840_29, rows));
-            let top = self.rows.end - 1 - row as u32;
-            let known = Partials::default();
-            let traced = self
-                .decider
-                .pixels(top, &[column as u32], &known, &|| self.bag.is_over());
-            if traced.is_err() {
+            let first = column as u32 / LANES as u32 * LANES as u32;
+            let y = self.rows.end - 1 - row as u32;
+            let Ok(traced) = self.decider.try_pixels([first, y], lanes) else {
                 // The rendering will end, or find that it is one that cannot be.
                 return Duration::ZERO;
+            };
+            // The first ones find nothing in the processor's caches.
+            if strips == 0 {
+                started = Instant::now();
+            } else {
+                tried += traced.pixels();
             }
-            tried += 1;
+            strips += 1;
         }
-        let all = (width * rows) as f64 / f64::from(tried.max(1)) / threads as f64;
+        let all = (width * rows) as f64 / tried.max(1) as f64 / threads as f64;
         started.elapsed().mul_f64(all)
     }
 
