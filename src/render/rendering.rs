@@ -14,7 +14,7 @@ use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::shader::pack::Packed;
 
-/// So many pixels are tried, or as many as this time allows, before it is said how long a picture will take.
+/// So many pixels are tried a thread, or as many as this time allows, before it is said how long a picture will take.
 const TRIED_PIXELS: u64 = 512;
 const TRYING: Duration = Duration::from_millis(2);
 
@@ -97,34 +97,50 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// How long the CPU would take for the whole picture, by a few pixels from all over it, made as those of bands are.
+    /// How long the CPU would take for the whole picture, by a few pixels from all over it that all threads try at
+    /// once: what two of them do is not twice what one does where they share a core.
     pub(super) fn seems_to_take(&self) -> Duration {
-        let threads = self.on_threads(rayon::current_num_threads);
         let lanes = self.lanes();
-        let [width, rows] = [u64::from(self.width), self.rows.len() as u64];
+        let speeds = self.on_threads(|| {
+            rayon::broadcast(|thread| {
+                let threads = thread.num_threads();
+                self.try_pixels(thread.index() as u32, threads as u32, lanes)
+            })
+        });
+        let speed: f64 = speeds.into_iter().sum();
+        let pixels = self.width as f64 * self.rows.len() as f64;
+        Duration::try_from_secs_f64(pixels / speed).unwrap_or(Duration::MAX)
+    }
+
+    /// Pixels a second of one of so many threads.
+    fn try_pixels(&self, thread: u32, threads: u32, lanes: Option<&Lanes>) -> f64 {
+        let [width, rows] = [self.width, self.rows.len() as u32].map(f64::from);
         let mut started = Instant::now();
-        let (mut strips, mut tried) = (0, 0);
-        while tried < TRIED_PIXELS && started.elapsed() < TRYING && !self.bag.is_over() {
+        let mut tried = 0;
+        for strip in 0.. {
             // Multiples of the plastic ratio's inverse and its square are spread evenly, however many there are.
-            let at =
-                |step: f64, of: u64| ((f64::from(strips + 1) * step).fract() * of as f64) as u64;
+            let number = f64::from(strip * threads + thread + 1);
+            let at = |step: f64, of: f64| ((number * step).fract() * of) as u32;
             let (column, row) = (at(0.754_877_67, width), at(0.569_840_29, rows));
-            let first = column as u32 / LANES as u32 * LANES as u32;
-            let y = self.rows.end - 1 - row as u32;
-            let Ok(traced) = self.decider.try_pixels([first, y], lanes) else {
+            let first = column / LANES as u32 * LANES as u32;
+            let Ok(traced) = self
+                .decider
+                .try_pixels([first, self.rows.end - 1 - row], lanes)
+            else {
                 // The rendering will end, or find that it is one that cannot be.
-                return Duration::ZERO;
+                return f64::INFINITY;
             };
             // The first ones find nothing in the processor's caches.
-            if strips == 0 {
+            if strip == 0 {
                 started = Instant::now();
-            } else {
-                tried += traced.pixels();
+                continue;
             }
-            strips += 1;
+            tried += traced.pixels();
+            if tried >= TRIED_PIXELS || started.elapsed() >= TRYING {
+                break;
+            }
         }
-        let all = (width * rows) as f64 / tried.max(1) as f64 / threads as f64;
-        started.elapsed().mul_f64(all)
+        tried as f64 / started.elapsed().as_secs_f64().max(1e-9)
     }
 
     /// The scene rounded to f32, for devices and lanes alike.
