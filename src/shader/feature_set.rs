@@ -4,13 +4,11 @@ mod conditions;
 
 use std::collections::BTreeSet;
 
-use super::feature::{Feature, Features};
 use super::kind::SurfaceKind;
 use super::pack::Packed;
 use crate::procedural::{self, Family, Shader};
 use crate::real::rational::two_to;
 use crate::settings::{SamplePattern, Settings};
-use conditions::Conditions;
 
 /// Which parts of the shader a scene needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -230,15 +228,5 @@ impl FeatureSet {
             procedural::with_called(family, numbers.collect())
         };
         [used(Family::Pplane), used(Family::Psphere)].concat()
-    }
-
-    /// What `//#if` in `shaders/` finds to hold.
-    pub fn features(&self) -> Features {
-        let holds = Conditions::new(self);
-        Feature::ALL
-            .iter()
-            .copied()
-            .filter(|feature| holds.feature(*feature))
-            .collect()
     }
 }

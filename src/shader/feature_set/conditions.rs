@@ -1,11 +1,23 @@
 //! Which features follow from what a scene needs.
 
 use super::{FeatureSet, LitFeatures};
-use crate::shader::feature::Feature;
+use crate::shader::feature::{Feature, Features};
 use crate::shader::kind::SurfaceKind;
 
+impl FeatureSet {
+    /// What `//#if` in `shaders/` finds to hold.
+    pub fn features(&self) -> Features {
+        let holds = Conditions::new(self);
+        Feature::ALL
+            .iter()
+            .copied()
+            .filter(|feature| holds.feature(*feature))
+            .collect()
+    }
+}
+
 /// A feature set, and what several features ask of it.
-pub(super) struct Conditions<'a> {
+struct Conditions<'a> {
     set: &'a FeatureSet,
     /// A ray can hit something.
     any: bool,
@@ -24,7 +36,7 @@ pub(super) struct Conditions<'a> {
 }
 
 impl<'a> Conditions<'a> {
-    pub(super) fn new(set: &'a FeatureSet) -> Self {
+    fn new(set: &'a FeatureSet) -> Self {
         let any = set.any_object();
         // Without anything to hit there is nothing to light.
         let lit = any && set.lit.is_some();
@@ -52,7 +64,7 @@ impl<'a> Conditions<'a> {
         }
     }
 
-    pub(super) fn feature(&self, feature: Feature) -> bool {
+    fn feature(&self, feature: Feature) -> bool {
         let Self {
             set,
             any,
