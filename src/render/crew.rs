@@ -15,7 +15,11 @@ use super::report::{Instead, without};
 
 /// What the CPU does in this time it does alone: loading a software driver, compiling a shader there and making the
 /// picture takes it about so long, even if it is three times as quick then (docs/BENCH.md).
-pub(super) const STARTING: Duration = Duration::from_millis(125);
+pub(super) const STARTING: Duration = Duration::from_millis(100);
+
+/// The CPU leaves its cores to a driver that gets ready for this time at most: two that share a core take twice as long
+/// each, and who finds no compiled shader on disk takes longer still.
+pub(super) const RESTING: Duration = Duration::from_millis(150);
 
 /// Who wants to hear that a rendering is over.
 pub(super) type Listeners = Mutex<Vec<Sender<News>>>;

@@ -10,7 +10,7 @@ use std::thread;
 
 use super::bag::{Kind, Role};
 use super::cpu_worker;
-use super::crew::{Crew, Over, STARTING};
+use super::crew::{Crew, Over, RESTING, STARTING};
 use super::device_thread::News;
 use super::device_worker::Here;
 use super::devices::{Devices, Found, Wanted};
@@ -122,13 +122,17 @@ impl Rendering<'_> {
         };
         let over = Mutex::new(vec![sender.clone()]);
         let late = found.is_empty() && wants_devices && !waits;
-        // Where there is software alone, it is asked for before the CPU has all cores, if it will be worth it.
+        // Where there is software alone, it is asked for before the CPU has all cores, if it seems to be worth it.
         if let (true, false, Source::Devices(devices)) = (late, asked, source)
             && !self.is_quick_on_cpu()
-            && self.seems_to_take() > STARTING
         {
-            self.ask_for_software(devices, &sender);
-            asked = true;
+            let seems = self.seems_to_take();
+            if seems > STARTING {
+                let pixels = self.width as f64 * self.rows.len() as f64;
+                self.ask_for_software(devices, &sender);
+                self.bag.rest(RESTING, pixels / seems.as_secs_f64());
+                asked = true;
+            }
         }
         let ended = thread::scope(|scope| {
             let crew = Crew::new(self, scope, &over);

@@ -63,6 +63,8 @@ pub(super) struct State {
     trial: Trial,
     /// If a worker on trial has come or will: the part of their cores that the others use until it has brought a band.
     pub(super) expected: Option<f64>,
+    /// Until when the CPU leaves all cores to it, and the pixels a second that the CPU would make meanwhile.
+    pub(super) rest: Option<(Instant, f64)>,
     /// How many devices' bands the CPU refines at the moment.
     pub(super) refining: u32,
     pub(super) error: Option<Error>,
@@ -85,6 +87,7 @@ impl State {
             workers: Vec::new(),
             trial: Trial::default(),
             expected: None,
+            rest: None,
             refining: 0,
             error: None,
             over: false,

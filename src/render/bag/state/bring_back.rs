@@ -69,12 +69,16 @@ impl State {
         }
     }
 
-    /// How quick those are that another one is tried against, on all their cores; none if they brought nothing yet.
+    /// How quick those are that another one is tried against, on all their cores; as far as they brought nothing yet, by
+    /// what they were seen to do before. None if nothing is known.
     fn speed_against_trial(&self) -> Option<f64> {
         let works = |worker: &&Worker| worker.role == Role::Works && !worker.left;
         let speeds = self.workers.iter().filter(works);
         let speed: f64 = speeds.filter_map(|worker| worker.activity.speed).sum();
-        (speed > 0.0).then(|| speed / self.expected.unwrap_or(1.0))
+        if speed > 0.0 {
+            return Some(speed / self.expected.unwrap_or(1.0));
+        }
+        self.rest.map(|(_, speed)| speed)
     }
 
     pub(in super::super) fn halt(&mut self, rows: &Range<u32>, halt: Halt) {

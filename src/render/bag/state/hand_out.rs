@@ -8,7 +8,7 @@ impl State {
             return Taken::End;
         }
         let is_cpu = self.workers[me].kind == Kind::Cpu;
-        if is_cpu && self.refining > 0 {
+        if is_cpu && (self.refining > 0 || self.is_resting()) {
             return Taken::Later;
         }
         // What went out and may be wrong is for the CPU alone, whatever else it does: another device may be of the
@@ -31,6 +31,12 @@ impl State {
             return self.twice(me, most);
         };
         self.hand_out(me, job)
+    }
+
+    /// Whether the CPU still leaves all cores to a worker that is getting ready.
+    fn is_resting(&self) -> bool {
+        let until = self.rest.map(|(until, _)| until);
+        self.is_warming() && until.is_some_and(|until| Instant::now() < until)
     }
 
     fn hand_out(&mut self, me: usize, job: Job) -> Taken {

@@ -117,6 +117,31 @@ fn only_the_cpu_compares() {
     });
 }
 
+/// While a driver gets ready it has all cores, for as long as was said; then the CPU goes on, and what it was seen to do
+/// before is what the one on trial has to beat.
+#[test]
+fn the_cpu_rests_while_another_one_gets_ready() {
+    let bag = Bag::new(WIDTH, 0..12, Some(4));
+    let [cpu, device] = [(Cpu, Works), (Device, OnTrial)].map(|(kind, role)| bag.join(kind, role));
+    let take = |me| bag.take(me, 4, u32::MAX, false);
+    bag.expect(Some(0.5));
+    bag.rest(Duration::from_secs(60), 1e-3);
+    assert_eq!(take(cpu), Taken::Later);
+    assert_eq!(take(device), Taken::Rows(8..12));
+    bag.deliver(finished(device, 8..12));
+    assert_eq!(take(device), Taken::Rows(4..8));
+    assert_eq!(take(device), Taken::Rows(0..4), "it was quicker at once");
+    let bag = Bag::new(WIDTH, 0..12, Some(4));
+    let cpu = bag.join(Cpu, Works);
+    bag.expect(Some(0.5));
+    bag.rest(Duration::ZERO, 1e-3);
+    assert_eq!(bag.take(cpu, 4, u32::MAX, false), Taken::Rows(8..12));
+    // It will not come.
+    bag.rest(Duration::from_secs(60), 1e-3);
+    bag.expect(None);
+    assert_eq!(bag.take(cpu, 4, u32::MAX, false), Taken::Rows(4..8));
+}
+
 /// Who is on trial makes a band alone after its first one, and if it leaves with it the others go on.
 #[test]
 fn a_trial_that_is_left_is_over() {
