@@ -170,6 +170,7 @@ impl App {
         self.hints.take(Vec::new());
         self.showing.viewport = Viewport::Fit;
         self.showing.outlined = None;
+        log::info!("opened {}", path.display());
         self.recent.opened(&path);
         match self.watching(&path) {
             Ok(watch) => self.watch = Some(watch),
