@@ -34,7 +34,10 @@ const CHARACTERS: &str = "0123456789.-rfvioctp+sszzzyzwq";
 
 /// Where nothing is to be lost a window is closed once in so many times that this comes to the monkey's mind: windows
 /// are to live for minutes, since memory that grows is seen in nothing else.
-const CLOSES: i32 = 40;
+const CLOSES: i32 = 300;
+
+/// A question is left on the screen once in so many times: what comes to the monkey's mind then soon closes the window.
+const STAYS: i32 = 150;
 
 /// A question needs about so long to be on the screen.
 const QUESTION: Duration = Duration::from_millis(80);
@@ -115,7 +118,7 @@ impl Monkey<'_> {
             return;
         }
         ask(&program.window);
-        if self.random.below(4) > 0 {
+        if self.random.below(STAYS) > 0 {
             thread::sleep(QUESTION);
             program.window.key(keys::ESCAPE, &[]);
         }
@@ -135,9 +138,10 @@ impl Monkey<'_> {
             window.type_text("nothing");
             window.key(keys::TAB, &[]);
         }
-        // The dialog is closed, or the question whether changes are to be lost is answered with no; that may also stay.
-        if self.model.to_be_lost() == 0 || self.random.below(4) > 0 {
+        // The dialog is closed, or the question whether changes are to be lost is answered with no.
+        for _ in 0..2 {
             window.key(keys::ESCAPE, &[]);
+            thread::sleep(QUESTION);
         }
     }
 
