@@ -227,6 +227,20 @@ impl<'a> PixelDecider<'a> {
         Ok((band, tally))
     }
 
+    /// Decides up to eight pixels of row `y` from column `x` on, as a band does, and forgets them: to see how long that
+    /// takes.
+    pub fn try_pixels(&self, [x, y]: [u32; 2], lanes: Option<&Lanes>) -> Result<Tally, Halt> {
+        let mut bytes = [0; 3 * LANES];
+        let strip = Strip {
+            first: x as usize,
+            y,
+            bytes: &mut bytes[..3 * LANES.min(self.width - x as usize)],
+            values: &mut [],
+            verdicts: &mut [],
+        };
+        self.strip(strip, self.jitter.row(y).as_deref(), lanes)
+    }
+
     /// Decides the pixels of a strip, whose row has these offsets.
     fn strip(
         &self,

@@ -20,7 +20,8 @@ use serde_json::json;
 
 use super::args::RenderOptions;
 use super::place::{Place, Queue};
-use super::render::{self, Args, RenderCommand, Targets};
+use super::render::{self, Args, RenderCommand};
+use super::targets::Targets;
 use super::{Answer, SOFTWARE, say, source};
 
 /// Pictures under way at once: one that is written, one that is rendered, one that is prepared.

@@ -28,6 +28,7 @@ mod say;
 mod slurm;
 mod source;
 mod summary;
+mod targets;
 mod values;
 
 use std::env;

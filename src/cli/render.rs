@@ -19,13 +19,13 @@ use plumb::scene::{Scene, list_model};
 use serde::Serialize;
 
 use super::args::RenderOptions;
-use super::destination::Destination;
 use super::outputs::Outputs;
 use super::parts::{self, PartOptions};
 use super::picture::{self, PictureFile};
 use super::place::Place;
 use super::progress::Progress;
 use super::summary::{answer, summary, told};
+use super::targets::Targets;
 use super::{Answer, SOFTWARE, say, source};
 
 /// What `plumb render` takes.
@@ -80,25 +80,6 @@ pub(crate) struct RenderCommand<'a> {
     pub(super) options: &'a RenderOptions,
     /// Its place among many.
     place: Option<&'a Place<'a>>,
-}
-
-/// Where the picture goes, and the one of its verdicts.
-pub(crate) struct Targets {
-    pub(crate) picture: Target,
-    pub(crate) verdicts: Option<Target>,
-}
-
-impl Targets {
-    /// Of the scene with this file.
-    pub(crate) fn new(options: &RenderOptions, file: Option<&Path>) -> Result<Self> {
-        let picture = Destination::of(options.output.as_deref()).target(file)?;
-        let verdicts = options.verdicts.as_deref();
-        let verdicts = verdicts.map(|path| Destination::of(Some(path)).target(file));
-        Ok(Self {
-            picture,
-            verdicts: verdicts.transpose()?,
-        })
-    }
 }
 
 /// What `--json` prints.

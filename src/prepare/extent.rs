@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::real::rational::{Ratio, abs, cross, dot, ratio, ratio3, two_to};
+use crate::real::rational::{Ratio, abs, cross, dot, exponent, ratio, ratio3, two_to};
 use crate::real::{Real, Undecided, V3};
 use crate::scene;
 
@@ -129,4 +129,17 @@ pub fn shortened<R: Real>(normal: DVec3) -> V3<R> {
     let largest = ratio(normal.abs().max_element());
     let [x, y, z] = ratio3(normal).map(|c| R::ratio(&(c / &largest)));
     V3::new(x, y, z)
+}
+
+/// A vector times the power of two that brings its largest component, of which `near` tells the size, to 1 or next
+/// above: so that squares stay within the range of f64.
+pub(super) fn of_size_one<R: Real>(v: V3<R>, near: DVec3) -> V3<R> {
+    let largest = near.abs().max_element();
+    if largest == 0.0 || largest.is_infinite() {
+        return v;
+    }
+    // In two steps, as one need not be an f64.
+    let power = -exponent(largest);
+    let half = power / 2;
+    v * R::exact(two_to(half)) * R::exact(two_to(power - half))
 }

@@ -1,9 +1,8 @@
 //! Materials and lights in the tracer's number type.
 
-use glam::DVec3;
-
+use super::extent::of_size_one;
 use super::projector::Projector;
-use crate::real::rational::{exponent, two_to};
+use crate::real::rational::two_to;
 use crate::real::{Real, V3};
 use crate::scene;
 
@@ -115,17 +114,4 @@ impl<R: Real> Light<R> {
             projector,
         }
     }
-}
-
-/// A vector times the power of two that brings its largest component, of which `near` tells the size, to 1 or next
-/// above: so that squares stay within the range of f64.
-pub(super) fn of_size_one<R: Real>(v: V3<R>, near: DVec3) -> V3<R> {
-    let largest = near.abs().max_element();
-    if largest == 0.0 || largest.is_infinite() {
-        return v;
-    }
-    // In two steps, as one need not be an f64.
-    let power = -exponent(largest);
-    let half = power / 2;
-    v * R::exact(two_to(half)) * R::exact(two_to(power - half))
 }

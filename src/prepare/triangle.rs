@@ -10,8 +10,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::camera::{Camera, over_pixels};
-use super::extent::{Extent, HalfPlane};
-use super::material::of_size_one;
+use super::extent::{Extent, HalfPlane, of_size_one};
 use super::plane::{Front, Plane, Side, Sides, Step};
 use super::world_plane::{WorldPlane, low_light};
 use crate::real::rational::{Ratio, abs, cross, dot, power_of_two, ratio3, sub, two_to};

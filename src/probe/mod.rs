@@ -9,6 +9,7 @@
 //! A probe borrows its scene. A thread that answers for many scenes holds each in an `Arc` of its own, and has a probe
 //! beside it for as long as questions are about that scene.
 
+mod answer;
 pub mod digits;
 mod explain;
 mod facts;

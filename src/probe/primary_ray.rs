@@ -13,8 +13,9 @@ use crate::prepare::Prepared;
 use crate::real::{Real, Undecided};
 use crate::scene::Scene;
 
+use super::answer::HitOrMiss;
 use super::digits::{components, full, line, triple};
-use super::why::{ExactRay, HitOrMiss};
+use super::why::ExactRay;
 
 /// With more objects than this only hits are listed.
 const LISTED: usize = 50;

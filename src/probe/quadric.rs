@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::why::{HitOrMiss, Reason};
+use super::answer::{HitOrMiss, Reason};
 use crate::real::rational::{Ratio, is_positive, is_zero, ratio};
 use crate::scene::Quadric;
 

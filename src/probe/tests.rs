@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 
-use super::why::{self, ExactRay};
+use super::why::ExactRay;
 use super::*;
 use crate::frame::DecidedBy;
 use crate::gpu::adapters;
@@ -158,7 +158,7 @@ fn hits_are_exact() {
             let [px, py] = [x, y].map(f64::from);
             let hit = probe.exact_tracer.first_hit([px, py]).unwrap();
             let ray = ExactRay::new(&scene.camera, px, py);
-            let is_hit = |object| ray.ask(&scene, object, 0.0) == why::HitOrMiss::Hit;
+            let is_hit = |object| ray.ask(&scene, object, 0.0) == answer::HitOrMiss::Hit;
             match hit {
                 Some(hit) => {
                     assert!(is_hit(hit.object), "{name} ({x}, {y}): {hit:?}");

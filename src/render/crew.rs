@@ -9,12 +9,13 @@ use super::Error;
 use super::bag::{Bag, Kind, Role};
 use super::device_thread::News;
 use super::device_worker::{DeviceWorker, Here};
-use super::devices::{Devices, Found, Wanted};
+use super::devices::{Devices, Found};
 use super::rendering::Rendering;
+use super::report::{Instead, without};
 
-/// What the CPU has done in this time it does alone: loading a software driver and compiling a shader there takes about
-/// so long, and a core.
-const STARTING: Duration = Duration::from_millis(100);
+/// What the CPU does in this time it does alone: loading a software driver, compiling a shader there and making the
+/// picture takes it about so long, even if it is three times as quick then (docs/BENCH.md).
+pub(super) const STARTING: Duration = Duration::from_millis(125);
 
 /// Who wants to hear that a rendering is over.
 pub(super) type Listeners = Mutex<Vec<Sender<News>>>;
@@ -106,12 +107,6 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
         self.spawn("device", move || worker.run(&here, sender, &news));
     }
 
-    /// Whether the CPU takes so long that a driver which uses the same cores may be quicker: by pixels from all over the
-    /// picture, which tells at once, or in the end by bands. False if the rendering ends before that is known.
-    fn lasts(self) -> bool {
-        self.rendering.seems_to_take() > STARTING || self.rendering.bag.lasts(STARTING)
-    }
-
     /// Waits for devices while the CPU works already, and lets them work.
     pub(super) fn late(
         self,
@@ -120,17 +115,11 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
         news: &Receiver<News>,
         sender: &Sender<News>,
     ) {
-        let settings = self.rendering.settings;
         let bag = &self.rendering.bag;
-        let ask_for_software = || {
-            bag.expect(Some(self.rendering.share_of_fewer_threads()));
-            devices.ask(
-                Wanted::new(settings, true),
-                News::of_devices(sender.clone()),
-            );
-        };
+        let ask_for_software = || self.rendering.ask_for_software(devices, sender);
         if !asked {
-            if self.rendering.is_quick_on_cpu() || !self.lasts() {
+            // By pixels from all over the picture it is quick; its bands may tell otherwise.
+            if self.rendering.is_quick_on_cpu() || !bag.lasts(STARTING) {
                 return;
             }
             ask_for_software();
@@ -163,9 +152,8 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
                             }
                             Err(error) => {
                                 bag.expect(None);
-                                self.rendering.tell(|told| {
-                                    told.left.push(format!("{error}; the CPU renders"))
-                                });
+                                self.rendering
+                                    .tell(|told| told.left.push(without(&error, Instead::Cpu)));
                             }
                         }
                     }
@@ -175,7 +163,7 @@ impl<'scope, 'env: 'scope, 'r: 'env> Crew<'scope, 'env, 'r> {
                     self.rendering.tell(|told| told.left_out = Some(name));
                     return;
                 }
-                Found::Software(_) if !self.lasts() => return,
+                Found::Software(_) if !bag.lasts(STARTING) => return,
                 Found::Software(_) => ask_for_software(),
                 // That there is none is nothing to talk about: the CPU makes the same picture.
                 Found::None(_) => return bag.expect(None),

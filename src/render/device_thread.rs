@@ -36,7 +36,7 @@ pub(super) enum News {
     /// The device rendered a band.
     Rendered(Box<Rendered>),
     /// The device's thread ends.
-    Ended(Result<Spent, GpuError>),
+    Ended(Result<Phases, GpuError>),
     /// The rendering is over.
     Over,
 }
@@ -47,14 +47,6 @@ impl News {
         // Nobody may listen any more.
         move |found| drop(sender.send(Self::Found(found)))
     }
-}
-
-/// What a device's thread did.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Spent {
-    /// Seconds of its kernels.
-    pub(super) kernel: f64,
-    pub(super) phases: Phases,
 }
 
 /// What a device is to render.
@@ -104,18 +96,15 @@ pub(super) fn run(task: &DeviceTask, device: Use<'_>, line: &Line) {
     watch.lap(Phase::Release);
     let phases = watch.phases();
     // Nobody may listen any more.
-    let _ = line
-        .news
-        .send(News::Ended(ended.map(|kernel| Spent { kernel, phases })));
+    let _ = line.news.send(News::Ended(ended.map(|()| phases)));
 }
 
-/// Returns the seconds of the kernels.
 fn render(
     task: &DeviceTask,
     device: Use<'_>,
     line: &Line,
     watch: &mut Stopwatch,
-) -> Result<f64, GpuError> {
+) -> Result<(), GpuError> {
     let pipeline = pipeline(task, device, watch)?;
     let frame = bands::Frame {
         width: task.width,
@@ -155,7 +144,7 @@ fn render(
             Err(_) => ControlFlow::Break(()),
         }
     };
-    let kernels = bands::run(
+    let ended = bands::run(
         device.gpu,
         &pipeline,
         &frame,
@@ -166,7 +155,7 @@ fn render(
     );
     #[cfg(test)]
     super::tests::fail(&fault, device.gpu, line)?;
-    kernels
+    ended.map(|_| ())
 }
 
 /// The shader for the packed scene, compiled and bound to it.
@@ -194,11 +183,13 @@ fn pipeline(
         let _ = thread::Builder::new()
             .name("buffers".into())
             .spawn_scoped(scope, buffers);
-        match device.compiled {
+        let shader = match device.compiled {
             Some(compiled) => compiled.get(gpu, &wgsl),
             None => gpu.compile(&wgsl, "main"),
-        }
+        };
+        watch.lap(Phase::Compile);
+        shader
     })?;
-    watch.lap(Phase::Compile);
+    watch.lap(Phase::Buffers);
     Ok(Pipeline::of(shader, buffers, packed, &features))
 }

@@ -11,11 +11,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::bag::Taken;
-use super::device_thread::{self, DeviceTask, Heights, Line, News, Spent, Use};
+use super::device_thread::{self, DeviceTask, Heights, Line, News, Use};
 use super::devices::{Device, Devices};
 use super::finish::{Finish, Unfinished};
 use super::rendering::Rendering;
-use super::report::{Beside, WorkerReport, WorkerSeconds};
+use super::report::{Beside, Instead, WorkerReport, WorkerSeconds, without};
 use super::{Backend, Error, Live};
 use crate::certify::trust;
 use crate::frame::Halt;
@@ -73,7 +73,8 @@ pub(super) struct DeviceWorker<'a, 'r> {
     started: Instant,
     ready: Option<Instant>,
     beside: Beside,
-    spent: Spent,
+    /// Where the time of its thread went, if that told.
+    thread: Phases,
     /// How long the device may keep silent.
     patience: Duration,
 }
@@ -86,7 +87,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             started: Instant::now(),
             ready: None,
             beside: Beside::default(),
-            spent: Spent::default(),
+            thread: Phases::default(),
             patience: patience(),
         }
     }
@@ -100,12 +101,12 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             Gone::Wrong(why) => {
                 trust::revoke(here.gpu(), self.rendering.settings.cache.as_deref());
                 bag.revoke(self.me, &why);
-                self.rendering.tell(|told| told.revoked = Some(why.clone()));
+                self.rendering.tell(|told| told.revoked.push(why.clone()));
                 return self.report(here, Some(why));
             }
             Gone::Unprovable(why) => {
                 bag.leave(self.me);
-                format!("{why}, so the CPU renders")
+                without(&why, Instead::Cpu)
             }
             // Who asks for the GPU wants to know that the scene is too much for it, or that the shader is no good.
             Gone::Fault(
@@ -117,14 +118,14 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 if backend == Backend::Gpu || !bag.leave(self.me) {
                     return bag.fail(error.into());
                 }
-                format!("{error}, so the CPU renders")
+                without(&error, Instead::Cpu)
             }
             Gone::Fault(error) => {
-                let why = error.to_string();
+                let left = without(&error, Instead::Rest);
                 if !bag.leave(self.me) {
                     return bag.fail(error.into());
                 }
-                format!("{why}: others made what it had left")
+                left
             }
         };
         self.rendering.tell(|told| told.left.push(left.clone()));
@@ -247,6 +248,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 }
                 Ok(News::Rendered(rendered)) => {
                     out -= 1;
+                    self.beside.kernel += rendered.kernel;
                     let rows = rendered.band.rows.clone();
                     if !bag.wants(&rows) {
                         continue;
@@ -271,7 +273,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 }
                 Ok(News::Ended(Err(error))) => return Gone::Fault(error),
                 Ok(News::Ended(Ok(spent))) => {
-                    self.spent = spent;
+                    self.thread = spent;
                     if stop() {
                         bag.fail(Error::Stopped);
                         return Gone::Done;
@@ -297,7 +299,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
     fn hear_out(&mut self, news: &Receiver<News>) {
         while let Ok(heard) = news.recv_timeout(LAST_WORDS) {
             if let News::Ended(ended) = heard {
-                self.spent = ended.unwrap_or_default();
+                self.thread = ended.unwrap_or_default();
                 return;
             }
         }
@@ -309,7 +311,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
         let start = self
             .ready
             .map_or(life, |ready| (ready - self.started).as_secs_f64());
-        let mut phases = self.spent.phases;
+        let mut phases = self.thread;
         let mut opening = 0.0;
         if let Here::Opened { phases: before, .. } = here {
             opening = before.sum();
@@ -320,11 +322,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             work: (life - start - wait).max(0.0),
             wait,
         };
-        let beside = Beside {
-            kernel: self.spent.kernel,
-            ..self.beside
-        };
-        let report = WorkerReport::new(&here.gpu().name, Some(beside), seconds, phases, left);
+        let report = WorkerReport::new(&here.gpu().name, Some(self.beside), seconds, phases, left);
         self.rendering
             .tell(|told| told.workers.push((self.me, report)));
     }

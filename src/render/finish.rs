@@ -99,6 +99,7 @@ impl<'a, 's> Finish<'a, 's> {
             mut band,
             doubtful,
             partials,
+            ..
         } = rendered;
         let pixels = band.rgb.len() / 3;
         let (decided, mut tally) =

@@ -195,7 +195,9 @@ pub fn render_in_turn(
     run(scene, settings, source, Some(turn), &|| false, emit)
 }
 
-/// The same on a device that somebody else has opened, and alone; the CPU goes on where it fails.
+/// The same on a device that somebody else has opened, and alone; the CPU goes on where it fails. The thread that keeps
+/// the device busy borrows it, so one that does not answer is not rendered on any more, but waited for at the end: the
+/// picture is whole then, and this returns when the driver does.
 ///
 /// # Errors
 /// As [`render`]; and [`Error::Stopped`].

@@ -7,16 +7,15 @@ use std::time::{Duration, Instant};
 use super::Settings;
 use super::bag::Bag;
 use super::report::Told;
-use crate::certify::lanes::Lanes;
+use crate::certify::lanes::{LANES, Lanes};
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
-use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::shader::pack::Packed;
 
-/// So many pixels are tried, or as many as this time allows, before it is said how long a picture will take.
-const TRIED_PIXELS: u32 = 128;
+/// So many pixels are tried a thread, or as many as this time allows, before it is said how long a picture will take.
+const TRIED_PIXELS: u64 = 512;
 const TRYING: Duration = Duration::from_millis(2);
 
 /// Everything that workers need to know.
@@ -98,30 +97,50 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// How long the CPU would take for the whole picture, pixel by pixel, by a few pixels from all over it.
+    /// How long the CPU would take for the whole picture, by a few pixels from all over it that all threads try at
+    /// once: what two of them do is not twice what one does where they share a core.
     pub(super) fn seems_to_take(&self) -> Duration {
-        let threads = self.on_threads(rayon::current_num_threads);
-        let [width, rows] = [u64::from(self.width), self.rows.len() as u64];
-        let started = Instant::now();
+        let lanes = self.lanes();
+        let speeds = self.on_threads(|| {
+            rayon::broadcast(|thread| {
+                let threads = thread.num_threads();
+                self.try_pixels(thread.index() as u32, threads as u32, lanes)
+            })
+        });
+        let speed: f64 = speeds.into_iter().sum();
+        let pixels = self.width as f64 * self.rows.len() as f64;
+        Duration::try_from_secs_f64(pixels / speed).unwrap_or(Duration::MAX)
+    }
+
+    /// Pixels a second of one of so many threads.
+    fn try_pixels(&self, thread: u32, threads: u32, lanes: Option<&Lanes>) -> f64 {
+        let [width, rows] = [self.width, self.rows.len() as u32].map(f64::from);
+        let mut started = Instant::now();
         let mut tried = 0;
-        while tried < TRIED_PIXELS && started.elapsed() < TRYING {
+        for strip in 0.. {
             // Multiples of the plastic ratio's inverse and its square are spread evenly, however many there are.
-            let at =
-                |step: f64, of: u64| ((f64::from(tried + 1) * step).fract() * of as f64) as u64;
+            let number = f64::from(strip * threads + thread + 1);
+            let at = |step: f64, of: f64| ((number * step).fract() * of) as u32;
             let (column, row) = (at(0.754_877_67, width), at(0.569_840_29, rows));
-            let top = self.rows.end - 1 - row as u32;
-            let known = Partials::default();
-            let traced = self
+            let first = column / LANES as u32 * LANES as u32;
+            let Ok(traced) = self
                 .decider
-                .pixels(top, &[column as u32], &known, &|| self.bag.is_over());
-            if traced.is_err() {
+                .try_pixels([first, self.rows.end - 1 - row], lanes)
+            else {
                 // The rendering will end, or find that it is one that cannot be.
-                return Duration::ZERO;
+                return f64::INFINITY;
+            };
+            // The first ones find nothing in the processor's caches.
+            if strip == 0 {
+                started = Instant::now();
+                continue;
             }
-            tried += 1;
+            tried += traced.pixels();
+            if tried >= TRIED_PIXELS || started.elapsed() >= TRYING {
+                break;
+            }
         }
-        let all = (width * rows) as f64 / f64::from(tried.max(1)) / threads as f64;
-        started.elapsed().mul_f64(all)
+        tried as f64 / started.elapsed().as_secs_f64().max(1e-9)
     }
 
     /// The scene rounded to f32, for devices and lanes alike.

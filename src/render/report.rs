@@ -1,5 +1,7 @@
 //! How a rendering went: put together at its end, from what was asked for, what was found, and where the time went.
 
+use std::fmt::Display;
+
 use serde::Serialize;
 
 use super::bag::Activity;
@@ -74,9 +76,29 @@ pub(super) struct Told {
     /// By their numbers.
     pub(super) workers: Vec<(usize, WorkerReport)>,
     pub(super) left: Vec<String>,
-    pub(super) revoked: Option<String>,
+    pub(super) revoked: Vec<String>,
     /// The name of an adapter that is software and was left out.
     pub(super) left_out: Option<String>,
+}
+
+/// Who makes what a device does not.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Instead {
+    /// The CPU, all of it.
+    Cpu,
+    /// Other devices, all of it.
+    Devices,
+    /// Whoever is there, what the device had not made when it left.
+    Rest,
+}
+
+/// Why a device did not stay to the end, or never came, and who makes its bands instead.
+pub(super) fn without(why: &dyn Display, instead: Instead) -> String {
+    match instead {
+        Instead::Cpu => format!("{why}, so the CPU renders"),
+        Instead::Devices => format!("{why}, so others render"),
+        Instead::Rest => format!("{why}: others made what it had left"),
+    }
 }
 
 /// What a worker did for a picture.
@@ -211,7 +233,7 @@ impl Report {
                 .or(devices().next())
                 .map(|worker| worker.name.clone()),
             fallback: (!left.is_empty()).then(|| left.join("; ")),
-            revoked,
+            revoked: (!revoked.is_empty()).then(|| revoked.join("; ")),
             left_out,
             threads: Some(threads),
             pixels,

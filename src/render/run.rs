@@ -4,18 +4,18 @@
 //! thread that asked for the picture. When the last one has gone out nobody is waited for but who has borrowed
 //! something, and those stop at once.
 
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use super::bag::{Kind, Role};
 use super::cpu_worker;
-use super::crew::{Crew, Over};
+use super::crew::{Crew, Over, STARTING};
 use super::device_thread::News;
 use super::device_worker::Here;
 use super::devices::{Devices, Found, Wanted};
 use super::rendering::Rendering;
-use super::report::Told;
+use super::report::{Instead, Told, without};
 use super::turns::Turn;
 use super::{Backend, Band, Emit, Error, Live, Precision, install_hint};
 use crate::gpu::GpuError;
@@ -60,6 +60,15 @@ impl Rendering<'_> {
                 devices.compile_ahead(&packed, self.settings, software);
             }
         }
+    }
+
+    /// Asks for devices that use the same cores, while the CPU works on fewer of them.
+    pub(super) fn ask_for_software(&self, devices: &Devices, sender: &Sender<News>) {
+        self.bag.expect(Some(self.share_of_fewer_threads()));
+        devices.ask(
+            Wanted::new(self.settings, true),
+            News::of_devices(sender.clone()),
+        );
     }
 
     /// Renders. Returns what came of it.
@@ -113,6 +122,14 @@ impl Rendering<'_> {
         };
         let over = Mutex::new(vec![sender.clone()]);
         let late = found.is_empty() && wants_devices && !waits;
+        // Where there is software alone, it is asked for before the CPU has all cores, if it will be worth it.
+        if let (true, false, Source::Devices(devices)) = (late, asked, source)
+            && !self.is_quick_on_cpu()
+            && self.seems_to_take() > STARTING
+        {
+            self.ask_for_software(devices, &sender);
+            asked = true;
+        }
         let ended = thread::scope(|scope| {
             let crew = Crew::new(self, scope, &over);
             // Whatever comes of it, all hear that it is over.
@@ -184,12 +201,12 @@ impl Rendering<'_> {
                     if !any_tracer && !others {
                         return Err(error.into());
                     }
-                    let who = if others {
-                        "others render"
+                    let instead = if others {
+                        Instead::Devices
                     } else {
-                        "the CPU renders"
+                        Instead::Cpu
                     };
-                    self.tell(|told| told.left.push(format!("{error}; {who}")));
+                    self.tell(|told| told.left.push(without(&error, instead)));
                 }
                 if self.settings.precision == Precision::Fast {
                     here.truncate(1);
@@ -199,10 +216,8 @@ impl Rendering<'_> {
             // Without any GPU the CPU gives the same picture; a GPU that was named has to be there.
             Found::None(error @ GpuError::NoAdapter) if any_tracer => {
                 let hint = install_hint();
-                self.tell(|told| {
-                    told.left
-                        .push(format!("{error}, so the CPU renders; {hint}"))
-                });
+                let why = without(&error, Instead::Cpu);
+                self.tell(|told| told.left.push(format!("{why}; {hint}")));
                 Ok(Vec::new())
             }
             Found::None(error) => Err(error.into()),

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::draft::Draft;
 use super::kind::EntityKind;
 use super::lex::{self, TokenKind};
-use super::parse::{Block, Parser};
+use super::parser::{Block, Parser};
 use super::table::{self, Attribute, Entity, Take};
 use crate::diagnostic::Diagnostic;
 

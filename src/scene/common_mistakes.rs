@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::lex::{Lexer, Token, TokenKind};
 use super::number::{self, split_dash};
-use super::parse::Parser;
+use super::parser::Parser;
 use crate::diagnostic::Diagnostic;
 
 /// What to say where another language's comment stands.

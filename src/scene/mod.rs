@@ -26,6 +26,7 @@ mod names;
 mod number;
 mod numbers;
 mod parse;
+mod parser;
 mod places;
 mod recover;
 mod remarks;

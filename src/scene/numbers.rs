@@ -7,7 +7,7 @@ use super::common_mistakes;
 use super::lex::{Token, TokenKind};
 use super::limit::Limit;
 use super::number::{self, NumberError, looks_numeric};
-use super::parse::{Block, Parser};
+use super::parser::{Block, Parser};
 use super::table::{Attribute, Field};
 use super::values::give_rows_in;
 use crate::diagnostic::Diagnostic;

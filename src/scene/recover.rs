@@ -5,7 +5,7 @@ use super::common_mistakes;
 use super::kind::EntityKind;
 use super::lex::{Token, TokenKind};
 use super::names::nearest;
-use super::parse::Parser;
+use super::parser::Parser;
 use super::table::{self, ENTITIES, Entity, UNSUPPORTED};
 use crate::diagnostic::Diagnostic;
 

@@ -7,6 +7,7 @@ use super::draft::Draft;
 use super::kind::EntityKind;
 use super::limit::Limit;
 
+mod relations;
 mod rows;
 
 pub use super::limit::MAX_PIXELDIM;

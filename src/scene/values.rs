@@ -7,7 +7,7 @@ use super::draft::TexturePicture;
 use super::lex::{Lexer, Token};
 use super::names::nearest;
 use super::number::looks_numeric;
-use super::parse::{Block, Parser};
+use super::parser::{Block, Parser};
 use super::table::{Attribute, ENTITIES, Entity, Take};
 use crate::diagnostic::Diagnostic;
 

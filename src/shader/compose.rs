@@ -148,7 +148,7 @@ fn insertion(what: &str, packed: &Packed, set: &FeatureSet, features: &Features)
 }
 
 fn layout(name: &str) -> Option<&'static Layout> {
-    records::LAYOUTS.iter().find(|layout| layout.name == name)
+    records::layouts().find(|layout| layout.name == name)
 }
 
 /// The objects of a small scene as literals, for primary rays: no load, no loop. Polygons come first: of objects that

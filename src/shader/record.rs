@@ -272,8 +272,8 @@ macro_rules! records {
             }
         )+
 
-        /// The layouts of all records.
-        pub const LAYOUTS: &[$crate::shader::record::Layout] =
+        /// The layouts of these records.
+        pub(super) const LAYOUTS: &[$crate::shader::record::Layout] =
             &[$(<$name as $crate::shader::record::Record>::LAYOUT),+];
     };
     (@why) => { None };

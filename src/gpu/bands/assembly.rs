@@ -16,6 +16,8 @@ pub struct Rendered {
     pub doubtful: Vec<u32>,
     /// What it has of those of them that have sure samples too.
     pub partials: Partials,
+    /// Seconds that its kernels took.
+    pub kernel: f64,
 }
 
 /// The band under way, put together from its rectangles.
@@ -60,6 +62,7 @@ impl Assembly {
             band,
             doubtful,
             partials,
+            ..
         } = self.under_way.get_or_insert_with(|| Rendered {
             band: Band {
                 rows: rectangle.band.clone(),
@@ -69,6 +72,7 @@ impl Assembly {
             },
             doubtful: Vec::new(),
             partials: Partials::default(),
+            kernel: 0.0,
         });
         let list = [counter, records];
         partials.take(rectangle, self.width as u32, layout.words, list);
@@ -85,6 +89,13 @@ impl Assembly {
             Pixels::Values => target.take_words::<16>(rows, bytes),
         }
         self.complete = rectangle.last;
+    }
+
+    /// The kernel of a rectangle that was taken ran for so many seconds.
+    pub(super) fn took(&mut self, seconds: f64) {
+        if let Some(rendered) = &mut self.under_way {
+            rendered.kernel += seconds;
+        }
     }
 
     /// The band, if all its rectangles have come.

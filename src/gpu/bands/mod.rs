@@ -129,6 +129,7 @@ pub fn run(
             if let Some(slot) = &mut slots[oldest] {
                 let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
                 plan.took(pixels, seconds);
+                assembly.took(seconds);
                 kernels += seconds;
             }
             open -= 1;

@@ -83,6 +83,8 @@ impl Trial {
     pub(super) fn learns(&mut self, speed: f64, other: Option<f64>, left: f64) -> Option<Role> {
         let (next, quicker) = match (&*self, other) {
             (Self::Warming, None) => (Self::Decided, Some(Role::OnTrial)),
+            // Its first band takes longer than those that follow, and others used the cores beside it.
+            (Self::Warming, Some(other)) if speed > other => (Self::Decided, Some(Role::OnTrial)),
             (Self::Warming, Some(other)) if left < WORTH * other => {
                 (Self::Decided, Some(Role::Works))
             }
@@ -180,6 +182,14 @@ mod tests {
         assert!(trial.admits(Works, false) && trial.admits(OnTrial, true));
         assert_eq!(trial.learns(99.0, other, left), None);
         decided
+    }
+
+    #[test]
+    fn who_is_quicker_at_its_first_band_makes_the_rest_at_once() {
+        for left in [0.4, 1e6] {
+            let quicker = Trial::default().learns(11.0, Some(10.0), left);
+            assert_eq!(quicker, Some(Role::OnTrial));
+        }
     }
 
     #[test]

@@ -100,8 +100,12 @@ impl State {
         self.workers[worker].ready = true;
     }
 
-    /// Whether what is left takes the workers of now longer than this; not before they have brought something.
+    /// Whether what is left takes the workers of now longer than this; not before they have brought something, and a
+    /// sixteenth of the picture was handed out: first bands are small, and slow for their size.
     pub(super) fn lasts(&self, time: Duration) -> bool {
+        if 16 * (self.rows.len() as u64 - self.rows_left()) < self.rows.len() as u64 {
+            return false;
+        }
         let speeds = self
             .at_work()
             .filter_map(|(_, worker)| worker.activity.speed);

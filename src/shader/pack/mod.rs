@@ -1,5 +1,6 @@
 //! The prepared scene rounded to f32: flat records for the GPU, and the numbers that go into the shader's text.
 
+mod camera;
 mod lit;
 mod primary;
 mod projector;
@@ -8,6 +9,7 @@ mod range;
 mod shared;
 mod surface;
 mod tables;
+mod trees;
 
 pub use lit::Lit;
 pub use tables::Tables;
@@ -16,21 +18,22 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, U, W_ROUNDINGS, round_up, upper_bound};
+use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, round_up};
 use super::kind::SurfaceKind;
 use super::records::{
-    BvhNode, CameraNumbers, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Quadric, Sphere,
-    SphereAndHit, SphereHit, Texplane, TiledPlane,
+    BvhNode, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Quadric, Sphere, SphereAndHit,
+    SphereHit, Texplane, TiledPlane,
 };
-use crate::prepare::bvh::Bvh;
 use crate::prepare::plane::Sides;
 use crate::prepare::screen_grid::ScreenGrid;
 use crate::prepare::{self, Prepared};
 use crate::real::{Bounded, V3};
 use crate::scene::Scene;
 use crate::settings::{SamplePattern, Settings};
+use camera::camera;
 use shared::Surfaces;
 use surface::{procedural_plane, texplane, tiled_plane};
+use trees::{Trees, node_size};
 
 /// The whole scene, packed.
 #[derive(Debug, Clone)]
@@ -348,11 +351,6 @@ impl Packed {
     }
 }
 
-fn node_size(node: &BvhNode) -> f64 {
-    let corner = |i: usize| f64::from(node.min[i].abs().max(node.max[i].abs()));
-    corner(0) + corner(1) + corner(2)
-}
-
 /// A factor of a colour in f32: one that is not 0 stays so, so that the check of its size sees it.
 pub(super) fn factor(value: f64) -> f32 {
     if value > 0.0 {
@@ -370,82 +368,10 @@ pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
     [v.x.value as f32, v.y.value as f32, v.z.value as f32]
 }
 
-fn camera(camera: &prepare::Camera<Bounded>, screen: &Screen) -> PackedCamera {
-    let unit = crate::real::rational::two_to(-camera.scale);
-    let reach = screen.reach(camera.anchor);
-    let d = camera.distance.value;
-    let offset = camera.offset.map(upper_bound);
-    let parts = [0, 1].map(|i| upper_bound(camera.step[i]) * reach[i] + offset[i]);
-    // κ − 1: docs/NUMERICS.md. Only columns and rows for which X·step and the offset have opposite signs count.
-    let more = [0, 1].map(|i| {
-        let (o, first) = (offset[i], -f64::from(camera.anchor[i]));
-        let opposite = if camera.offset[i].value > 0.0 {
-            -first
-        } else {
-            f64::from(screen.pixels[i] - 1) + first
-        };
-        let most = (opposite + screen.margin).max(0.0) * upper_bound(camera.step[i]);
-        let worst = most.min((d * d + o * o).sqrt());
-        4.0 * worst * o / (d * d + (worst - o) * (worst - o))
-    });
-    // Offsets that were rounded to f32 move W, whose length is at least d.
-    let moved = camera.step.map(upper_bound).iter().sum::<f64>() * screen.offset_error();
-    PackedCamera {
-        numbers: CameraNumbers {
-            anchor: camera.anchor,
-            step: camera.step.map(|v| v.value as f32),
-            offset: camera.offset.map(|v| v.value as f32),
-            distance: d as f32,
-            gain: (255.0 * unit) as f32,
-            unit: unit as f32,
-            pad: Default::default(),
-        },
-        w_error: round_up(
-            W_ROUNDINGS * U * (parts[0] * parts[0] + parts[1] * parts[1] + d * d).sqrt() + moved,
-        ),
-        condition: round_up(1.0 + more[0] + more[1] + moved / (d * U)),
-    }
-}
-
 fn object(ambient: V3<Bounded>) -> Object {
     Object {
         ambient: factors(ambient),
         kind: 0,
-    }
-}
-
-/// The nodes of the spheres' tree, then of the triangles'.
-#[derive(Default)]
-struct Trees {
-    nodes: Vec<BvhNode>,
-    depth: usize,
-    triangle_root: Option<usize>,
-}
-
-impl Trees {
-    fn new(world: Option<&prepare::World<Bounded>>) -> Self {
-        let mut trees = Self::default();
-        let Some(world) = world else { return trees };
-        if let Some(tree) = &world.sphere_tree {
-            trees.add(tree, 0);
-        }
-        if let Some(tree) = &world.triangle_tree {
-            trees.triangle_root = Some(trees.nodes.len());
-            trees.add(tree, world.loose_planes());
-        }
-        trees
-    }
-
-    /// Adds the nodes of a tree whose leaves begin to count at `first`.
-    fn add(&mut self, tree: &Bvh, first: usize) {
-        let root = self.nodes.len();
-        self.depth = self.depth.max(tree.depth);
-        self.nodes.extend(tree.nodes.iter().map(|node| BvhNode {
-            min: node.min,
-            first: node.first + if node.count == 0 { root } else { first } as u32,
-            max: node.max,
-            count: node.count,
-        }));
     }
 }
 

@@ -7,6 +7,7 @@ use crate::jitter::{Jitter, Sampling};
 use crate::real::Real;
 use crate::real::rational::ratio;
 use crate::scene::load_from;
+use crate::shader::bounds::U;
 use crate::shader::bounds::{DIR_ROUNDINGS, MOST_PRODUCT};
 
 /// W and its direction as the shader has them from an offset in f32, against those from the course's place: pixels far
