@@ -41,7 +41,10 @@ impl Flow {
 /// Has the system put these bytes on the disk, and does not wait. It is a hint: where it fails, so will the end, which
 /// waits.
 #[cfg(target_os = "linux")]
-#[expect(unsafe_code, reason = "the system's call is unsafe to call, as all of C's")]
+#[expect(
+    unsafe_code,
+    reason = "the system's call is unsafe to call, as all of C's"
+)]
 fn begin(file: &File, bytes: std::ops::Range<u64>) {
     use std::os::fd::AsRawFd as _;
     let (Ok(from), Ok(length)) = (
@@ -52,12 +55,7 @@ fn begin(file: &File, bytes: std::ops::Range<u64>) {
     };
     // SAFETY: the call takes numbers alone, and the file is open.
     let _ = unsafe {
-        libc::sync_file_range(
-            file.as_raw_fd(),
-            from,
-            length,
-            libc::SYNC_FILE_RANGE_WRITE,
-        )
+        libc::sync_file_range(file.as_raw_fd(), from, length, libc::SYNC_FILE_RANGE_WRITE)
     };
 }
 

@@ -205,12 +205,9 @@ impl Output {
                     source,
                 })?,
             )),
-            Format::Exr => Encoder::Exr(Box::new(Exr::new(
-                width,
-                rows,
-                &metadata.entries,
-                HASH_KEY,
-            ))),
+            Format::Exr => {
+                Encoder::Exr(Box::new(Exr::new(width, rows, &metadata.entries, HASH_KEY)))
+            }
         };
         let mut to = Counted {
             sink: Sink::open(&target)?,
@@ -367,9 +364,7 @@ impl Output {
         let ended = match encoder {
             Encoder::Ppm => Ok(()),
             Encoder::Png(png) => png.finish(HASH_KEY, told, &mut to),
-            Encoder::Exr(exr) => exr
-                .finish(told, &mut to.sink)
-                .map(|bytes| to.bytes = bytes),
+            Encoder::Exr(exr) => exr.finish(told, &mut to.sink).map(|bytes| to.bytes = bytes),
         };
         let bytes = to.bytes;
         match ended.and_then(|()| to.sink.commit(durable)) {
