@@ -13,52 +13,47 @@ const SIZE: &str = "96x72";
 /// Scenes that are left out: one is an error, and the others keep a driver that is a single CPU busy for long.
 const LEFT_OUT: [&str; 2] = ["lit_half_mirrors_three", "lit_thousand_panes"];
 
-/// The picture from the GPU as PPM, and its report.
-fn picture(scene: &Path, samples: &str, driver: Option<&Path>) -> (Vec<u8>, serde_json::Value) {
-    let scene = scene.to_str().unwrap();
-    let args = [
-        "render",
-        scene,
-        "-o",
-        "-",
-        "--backend",
-        "gpu",
-        "--json",
-        "--precision",
-        "certified",
-        "--size",
-        SIZE,
-        "--samples",
-        samples,
-    ];
+/// The pictures of `scenes` from the GPU as PPM, with their reports; all in one process, which opens its device once.
+fn pictures(
+    scenes: &[PathBuf],
+    samples: &str,
+    driver: Option<&Path>,
+) -> Vec<(Vec<u8>, serde_json::Value)> {
+    let which = if driver.is_some() { "second" } else { "first" };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("drivers_{which}_{samples}"));
+    drop(std::fs::remove_dir_all(&folder));
+    std::fs::create_dir(&folder).unwrap();
+    let mut args = vec!["render"];
+    args.extend(scenes.iter().map(|scene| scene.to_str().unwrap()));
+    args.extend(["-o", folder.to_str().unwrap(), "--backend", "gpu", "--json"]);
+    args.extend(["--precision", "certified", "--size", SIZE]);
+    args.extend(["--samples", samples]);
     let output = plumb(&args, driver);
-    (
-        output.stdout,
-        serde_json::from_slice(&output.stderr).unwrap(),
-    )
+    let reports = serde_json::Deserializer::from_slice(&output.stdout)
+        .into_iter::<serde_json::Value>()
+        .map(Result::unwrap);
+    let pictures = scenes.iter().zip(reports).map(|(scene, report)| {
+        let name = scene.with_extension("ppm");
+        let picture = folder.join(name.file_name().unwrap());
+        assert_eq!(report["scene"], scene.to_str().unwrap());
+        (std::fs::read(picture).unwrap(), report)
+    });
+    let pictures: Vec<_> = pictures.collect();
+    assert_eq!(pictures.len(), scenes.len());
+    pictures
 }
 
-#[test]
-fn two_drivers_make_the_same_pictures() {
+/// What is wrong with the two drivers' pictures of `scenes`.
+fn differences(scenes: &[PathBuf], samples: &str) -> Vec<String> {
     let second = second_driver();
-    let name = |path: &PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
-    let scenes: Vec<PathBuf> = common::good_scenes()
-        .into_iter()
-        .filter(|path| !LEFT_OUT.contains(&name(path).as_str()))
-        .collect();
-    assert!(scenes.len() > 200, "only {} scenes", scenes.len());
+    let (first, second) = std::thread::scope(|scope| {
+        let first = scope.spawn(|| pictures(scenes, samples, None));
+        let second = pictures(scenes, samples, Some(&second));
+        (first.join().unwrap(), second)
+    });
     let mut differ = Vec::new();
-    // Antialiased the largest shader of ours, which has as many buffers as this driver allows, and two others.
-    let antialiased = [
-        "showcase.txt",
-        "lit/mirror_and_glass.txt",
-        "gallery/ring.txt",
-    ];
-    let antialiased = antialiased.map(|name| (common::scenes().join(name), "16"));
-    let once = scenes.iter().map(|path| (path.clone(), "1"));
-    for (scene, samples) in &once.chain(antialiased).collect::<Vec<_>>() {
-        let (one, first) = picture(scene, samples, None);
-        let (other, report) = picture(scene, samples, Some(&second));
+    for (scene, ((one, first), (other, report))) in scenes.iter().zip(first.into_iter().zip(second))
+    {
         // Scenes whose numbers are beyond f32 are rendered on the CPU.
         let on_cpu = first["fallback"].is_string() && report["fallback"].is_string();
         let same = first["adapter"] == report["adapter"];
@@ -72,6 +67,28 @@ fn two_drivers_make_the_same_pictures() {
             differ.push(format!("{}: the bytes differ", scene.display()));
         }
     }
+    differ
+}
+
+#[test]
+fn two_drivers_make_the_same_pictures() {
+    let name = |path: &PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
+    let scenes: Vec<PathBuf> = common::good_scenes()
+        .into_iter()
+        .filter(|path| !LEFT_OUT.contains(&name(path).as_str()))
+        .collect();
+    assert!(scenes.len() > 200, "only {} scenes", scenes.len());
+    let mut differ = differences(&scenes, "1");
+    // Antialiased the largest shader of ours, which has as many buffers as this driver allows, and two others.
+    let antialiased = [
+        "showcase.txt",
+        "lit/mirror_and_glass.txt",
+        "gallery/ring.txt",
+    ];
+    differ.extend(differences(
+        &antialiased.map(|name| common::scenes().join(name)),
+        "16",
+    ));
     assert!(differ.is_empty(), "{}", differ.join("\n"));
 }
 
