@@ -63,6 +63,16 @@ impl<'a> PixelDecider<'a> {
         Self { stop, ..self }
     }
 
+    /// Has the scene prepared already.
+    #[must_use]
+    pub fn prepared(self, exact_tracer: ExactTracer<'a>) -> Self {
+        let exact_tracer = exact_tracer.with_values(self.values);
+        Self {
+            exact_tracer: exact_tracer.into(),
+            ..self
+        }
+    }
+
     /// Prepares the scene, if that was not done yet.
     pub fn exact_tracer(&self) -> &ExactTracer<'a> {
         self.exact_tracer

@@ -188,6 +188,7 @@ fn frames(args: &Args, output: &Path) -> Result<What> {
     let frames = u32::try_from(pictures.len()).unwrap_or(u32::MAX);
     Ok(What::Frames {
         pictures,
+        output: output.to_owned(),
         tasks: args.parts.unwrap_or(TASKS).min(frames),
     })
 }

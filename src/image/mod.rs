@@ -11,8 +11,7 @@
 //! file ─► read: Picture ─► compare: Comparison, difference Picture
 //! ```
 //!
-//! PPM and PNG are written as the bands come; memory does not grow with the picture. EXR keeps the picture in memory
-//! and is therefore refused above [`exr::MAX_PIXELS`] pixels.
+//! Pictures are written as the bands come; memory does not grow with their height.
 //!
 //! The picture's hash is the SHA-256 of the picture's PPM file, whatever the format of the file that is written: two
 //! pictures with the same hash have the same size and the same bytes, and `sha256sum picture.ppm` tells it too.
@@ -20,7 +19,8 @@
 pub mod compare;
 mod document;
 mod error;
-pub mod exr;
+mod exr;
+mod flow;
 mod left;
 mod output;
 mod png;

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use super::exr::Exr;
 use super::png::Png;
 use super::sink::Sink;
-use super::size::{check_size, size_error};
+use super::size::check_size;
 use super::target::Target;
 use super::{Format, OutputError};
 use crate::cores;
@@ -139,7 +139,6 @@ pub struct Output {
     hash: Option<Sha256>,
     width: u32,
     rows: u32,
-    metadata: Metadata,
     written: u32,
     /// The row above which the next band must end, counted from the bottom; any before the first.
     next: Option<u32>,
@@ -150,7 +149,7 @@ pub struct Output {
 enum Encoder {
     Ppm,
     Png(Box<Png>),
-    Exr(Exr),
+    Exr(Box<Exr>),
 }
 
 impl Encoder {
@@ -158,10 +157,7 @@ impl Encoder {
         match self {
             Self::Ppm => to.write_all(&band.rgb),
             Self::Png(png) => png.write(&band.rgb, to),
-            Self::Exr(exr) => {
-                exr.write(band.values.as_deref().unwrap_or_default());
-                Ok(())
-            }
+            Self::Exr(exr) => exr.write(band.values.as_deref().unwrap_or_default(), &mut to.sink),
         }
     }
 }
@@ -190,7 +186,7 @@ impl Output {
     ///
     /// # Errors
     /// Any [`OutputError`] but [`Unfinished`](OutputError::Unfinished): what cannot be opened or created, a size that
-    /// the format cannot hold (no pixels at all; an EXR above [`exr::MAX_PIXELS`]), metadata that cannot be told.
+    /// the format cannot hold (no pixels at all; more than it can count), metadata that cannot be told.
     pub fn open(
         target: Target,
         format: Format,
@@ -209,10 +205,9 @@ impl Output {
                     source,
                 })?,
             )),
-            Format::Exr => Encoder::Exr(Exr::new(width, rows).map_err(|_| {
-                let problem = "there is not enough memory to keep it".into();
-                size_error(format, width, rows, problem)
-            })?),
+            Format::Exr => {
+                Encoder::Exr(Box::new(Exr::new(width, rows, &metadata.entries, HASH_KEY)))
+            }
         };
         let mut to = Counted {
             sink: Sink::open(&target)?,
@@ -234,7 +229,6 @@ impl Output {
             hash,
             width,
             rows,
-            metadata,
             written: 0,
             next: None,
             failed: false,
@@ -244,11 +238,10 @@ impl Output {
 
     /// Has [`finish`](Output::finish) wait until the system has put the file where it outlives a power cut.
     #[must_use]
-    pub fn durable(self) -> Self {
-        Self {
-            durable: true,
-            ..self
-        }
+    pub fn durable(mut self) -> Self {
+        self.to.sink.begin_early();
+        self.durable = true;
+        self
     }
 
     /// Hashes the picture whatever its format is; to be asked for before the first rows are written.
@@ -352,7 +345,6 @@ impl Output {
             encoder,
             hash,
             rows,
-            mut metadata,
             written,
             failed,
             durable,
@@ -372,13 +364,7 @@ impl Output {
         let ended = match encoder {
             Encoder::Ppm => Ok(()),
             Encoder::Png(png) => png.finish(HASH_KEY, told, &mut to),
-            Encoder::Exr(exr) => {
-                metadata
-                    .entries
-                    .push((HASH_KEY.to_owned(), told.to_owned()));
-                exr.finish(&metadata.entries, &mut to.sink)
-                    .map(|bytes| to.bytes = bytes)
-            }
+            Encoder::Exr(exr) => exr.finish(told, &mut to.sink).map(|bytes| to.bytes = bytes),
         };
         let bytes = to.bytes;
         match ended.and_then(|()| to.sink.commit(durable)) {

@@ -24,16 +24,17 @@ use std::thread;
 use tempfile::TempPath;
 
 use super::OutputError;
+use super::flow::Flow;
 use super::left::prefix;
 use super::target::{self, Found, Target};
 
-/// Bytes gathered before they are handed to the system.
-const BUFFER: usize = 1 << 20;
+/// Bytes gathered before they are handed to the system. What comes in larger pieces is not copied.
+const BUFFER: usize = 1 << 17;
 
 /// An open target: takes bytes, and at the end [`commit`](Sink::commit)s them. Dropped without, nothing remains.
 #[derive(Debug)]
 pub(super) struct Sink {
-    writer: BufWriter<File>,
+    writer: BufWriter<Flow>,
     ending: Ending,
 }
 
@@ -101,17 +102,21 @@ impl Sink {
 
     fn new(file: File, ending: Ending) -> Self {
         Self {
-            writer: BufWriter::with_capacity(BUFFER, file),
+            writer: BufWriter::with_capacity(BUFFER, Flow::new(file)),
             ending,
         }
     }
 
-    /// The file itself, empty, for an encoder that must go back and forth in it; none where only writing on is
-    /// possible.
-    pub(super) fn seekable(&mut self) -> Option<&mut File> {
-        match self.ending {
-            Ending::Through => None,
-            Ending::Rename(..) | Ending::Copy(..) => Some(self.writer.get_mut()),
+    /// The file, for an encoder that goes back in it; of use only where nothing reaches the target before the end.
+    pub(super) fn seekable(&mut self) -> &mut BufWriter<Flow> {
+        &mut self.writer
+    }
+
+    /// Has the system begin to put the file on the disk while it is written, since [`commit`](Sink::commit) is going to
+    /// wait for it.
+    pub(super) fn begin_early(&mut self) {
+        if self.is_beside() {
+            self.writer.get_mut().early = Some(0);
         }
     }
 
@@ -123,10 +128,8 @@ impl Sink {
     /// Everything written becomes the target. A `durable` one outlives a power cut from here on: the system has put it
     /// where it stays, name and all.
     pub(super) fn commit(self, durable: bool) -> io::Result<()> {
-        let mut file = self
-            .writer
-            .into_inner()
-            .map_err(io::IntoInnerError::into_error)?;
+        let flow = self.writer.into_inner();
+        let mut file = flow.map_err(io::IntoInnerError::into_error)?.file;
         match self.ending {
             Ending::Through => Ok(()),
             // Closed before it is renamed: some network file systems keep the last errors, and the last bytes, for

@@ -1,9 +1,10 @@
 //! Parts on their way into their picture: read and checked on all cores, a few chunks ahead of who writes them, so that
-//! memory does not grow with the picture.
+//! memory does not grow with the picture. What was written is memory for what is read next: memory that was never
+//! touched before costs as much as half of the hashing.
 
 use std::io;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread;
 
 use rayon::prelude::*;
@@ -11,6 +12,9 @@ use rayon::prelude::*;
 use super::folder::Survey;
 use super::part::{Part, PartError};
 use crate::frame::{Band, Emit};
+
+/// Chunks for each core in a batch: enough that cores seldom wait for the last one of them.
+const BATCH: usize = 4;
 
 /// Why parts were not joined.
 #[derive(Debug, thiserror::Error)]
@@ -43,33 +47,40 @@ pub fn join(survey: &Survey, emit: &mut Emit<'_>) -> Result<Joined, JoinError> {
     thread::scope(|scope| {
         // One batch is read and checked while another waits and a third one is written.
         let (sender, receiver) = sync_channel(1);
-        scope.spawn(move || read_all(survey, &sender));
-        write_all(&receiver, emit)
+        let (used, spare) = channel();
+        scope.spawn(move || read_all(survey, &spare, &sender));
+        write_all(&receiver, &used, emit)
     })
 }
 
 /// Rows, and how many bytes they took in the file; or what was wrong.
 type Chunk = Result<(Band, u64), JoinError>;
 
-fn write_all(from: &Receiver<Vec<Chunk>>, emit: &mut Emit<'_>) -> Result<Joined, JoinError> {
+fn write_all(
+    from: &Receiver<Vec<Chunk>>,
+    used: &Sender<Vec<u8>>,
+    emit: &mut Emit<'_>,
+) -> Result<Joined, JoinError> {
     let mut joined = Joined { bytes: 0 };
     for chunk in from.iter().flatten() {
         let (band, bytes) = chunk?;
         emit(&band)?;
         joined.bytes += bytes;
+        // At the end nobody reads any more.
+        let _ = used.send(band.rgb);
     }
     Ok(joined)
 }
 
 /// Reads all chunks in order, a batch at a time, until nobody takes them any more.
-fn read_all(survey: &Survey, to: &SyncSender<Vec<Chunk>>) {
+fn read_all(survey: &Survey, spare: &Receiver<Vec<u8>>, to: &SyncSender<Vec<Chunk>>) {
     let parts = survey.states().len() as u32;
-    let batch = 2 * rayon::current_num_threads();
+    let batch = BATCH * rayon::current_num_threads();
     let mut places = Vec::with_capacity(batch);
-    let send = |places: &mut Vec<(Arc<Part>, u32)>| {
+    let send = |places: &mut Vec<(Arc<Part>, u32, Vec<u8>)>| {
         let read: Vec<Chunk> = places
             .par_drain(..)
-            .map(|(part, chunk)| band(&part, chunk))
+            .map(|(part, chunk, bytes)| band(&part, chunk, bytes))
             .collect();
         to.send(read).is_ok()
     };
@@ -85,7 +96,8 @@ fn read_all(survey: &Survey, to: &SyncSender<Vec<Chunk>>) {
             }
         };
         for chunk in 0..part.chunks() {
-            places.push((Arc::clone(&part), chunk));
+            let bytes = spare.try_recv().unwrap_or_default();
+            places.push((Arc::clone(&part), chunk, bytes));
             if places.len() == batch && !send(&mut places) {
                 return;
             }
@@ -109,12 +121,11 @@ fn open(survey: &Survey, number: u32) -> Result<Arc<Part>, JoinError> {
     Ok(Arc::new(part))
 }
 
-/// The rows of a chunk.
-fn band(part: &Part, chunk: u32) -> Chunk {
+/// The rows of a chunk, in memory that there is.
+fn band(part: &Part, chunk: u32, mut rgb: Vec<u8>) -> Chunk {
     let header = part.header();
     let number = header.number;
-    let mut rgb = part
-        .read(chunk)
+    part.read(chunk, &mut rgb)
         .map_err(|error| JoinError::Part { number, error })?;
     let bytes = rgb.len() as u64;
     let rows = part.layout().rows_of(chunk);

@@ -42,15 +42,19 @@ pub struct Work {
 
 impl Work {
     /// Estimates the work that these rows of the scene's picture are, to be cut into so many parts: the estimate may
-    /// take a small share of the time that one of them does.
-    pub fn estimate(scene: &Scene, settings: &Settings, rows: &Range<u32>, parts: u32) -> Self {
+    /// take a small share of the time that one of them does. The scene is prepared already, for the settings' view.
+    pub fn estimate(
+        (scene, tracer): (&Scene, &ExactTracer<'_>),
+        settings: &Settings,
+        rows: &Range<u32>,
+        parts: u32,
+    ) -> Self {
         let width = scene.camera.pixeldim[0];
         let height = rows.len() as u32;
         let samples = u64::from(width) * u64::from(height) * u64::from(settings.samples);
         let pixels = (samples / ONE_OF / u64::from(parts.max(1))).clamp(LEAST, MOST);
         let columns = COLUMNS.min(width);
         let blocks = ((pixels / u64::from(columns)) as u32).clamp(1, height.max(1));
-        let tracer = ExactTracer::new(scene, settings.view());
         let limits = Limits {
             max_rays: MOST_RAYS.min(settings.limits.max_rays),
             enough: f64::INFINITY,

@@ -26,11 +26,7 @@ impl Drawn {
 impl Blit {
     /// Compiles the shader for the window's surface.
     pub(super) fn new(state: &RenderState) -> Self {
-        let entry = if state.target_format.is_srgb() {
-            "linear"
-        } else {
-            "bytes"
-        };
+        let entry = entry(state.target_format);
         let wgsl = String::from(include_str!("blit.wgsl"));
         let pipeline = pipeline(&state.device, "blit", wgsl, entry, state.target_format);
         Self { pipeline }
@@ -49,9 +45,7 @@ impl Blit {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: DRAWN,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_DST,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -72,6 +66,11 @@ impl Blit {
         pass.set_bind_group(0, &drawn.bound, &[]);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// What writes bytes into a surface of this format, so that they are shown as they are.
+pub(super) fn entry(format: wgpu::TextureFormat) -> &'static str {
+    if format.is_srgb() { "linear" } else { "bytes" }
 }
 
 /// A pipeline without vertices that draws a triangle over everything.

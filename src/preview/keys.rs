@@ -178,13 +178,20 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ("Ctrl+Q", "close"),
 ];
 
-/// The commands of the keys that were pressed, unless a field of text has them. Those that concern the window as a whole
-/// it has not: see [`leaves_field`].
-pub(super) fn pressed(context: &Context) -> Vec<Command> {
+/// The commands of the keys that were pressed, unless a field of text has them: those before anything that the mouse did
+/// in this frame, and those after. Those that concern the window as a whole it has not: see [`leaves_field`].
+pub(super) fn pressed(context: &Context) -> (Vec<Command>, Vec<Command>) {
     if context.egui_wants_keyboard_input() {
-        return Vec::new();
+        return Default::default();
     }
-    commands(context)
+    context.input(|input| {
+        let is_mouse =
+            |event: &Event| matches!(event, Event::PointerMoved(_) | Event::PointerButton { .. });
+        let first = input.events.iter().position(is_mouse);
+        let (early, late) = input.events.split_at(first.unwrap_or(input.events.len()));
+        let asked = |events: &[Event]| events.iter().filter_map(asked).collect();
+        (asked(early), asked(late))
+    })
 }
 
 /// The commands for the window as a whole where a field of text has the keys. The field is left, so that what was typed
@@ -193,7 +200,8 @@ pub(super) fn leaves_field(context: &Context) -> Vec<Command> {
     let Some(field) = context.memory(|memory| memory.focused()) else {
         return Vec::new();
     };
-    let mut commands = commands(context);
+    let mut commands: Vec<_> =
+        context.input(|input| input.events.iter().filter_map(asked).collect());
     commands.retain(|command| matches!(command, Command::SaveChanges | Command::Quit));
     if !commands.is_empty() {
         context.memory_mut(|memory| memory.surrender_focus(field));
@@ -202,22 +210,20 @@ pub(super) fn leaves_field(context: &Context) -> Vec<Command> {
     commands
 }
 
-fn commands(context: &Context) -> Vec<Command> {
-    context.input(|input| {
-        let asked = |event: &Event| match event {
-            // Each key event carries the modifiers of its own moment, as several events may come between two frames.
-            Event::Key {
-                key,
-                pressed: true,
-                modifiers,
-                ..
-            } => command(*key, *modifiers),
-            // egui makes an event of its own of Ctrl+C.
-            Event::Copy => Some(Command::CopyCamera),
-            _ => None,
-        };
-        input.events.iter().filter_map(asked).collect()
-    })
+/// What an event asks for.
+fn asked(event: &Event) -> Option<Command> {
+    match event {
+        // Each key event carries the modifiers of its own moment, as several events may come between two frames.
+        Event::Key {
+            key,
+            pressed: true,
+            modifiers,
+            ..
+        } => command(*key, *modifiers),
+        // egui makes an event of its own of Ctrl+C.
+        Event::Copy => Some(Command::CopyCamera),
+        _ => None,
+    }
 }
 
 /// What a key asks for with these modifiers.
@@ -240,9 +246,33 @@ mod tests {
 
     fn listening() -> Harness<'static, Vec<Command>> {
         Harness::new_ui_state(
-            |ui, commands: &mut Vec<Command>| commands.extend(pressed(ui.ctx())),
+            |ui, commands: &mut Vec<Command>| commands.extend(pressed(ui.ctx()).0),
             Vec::new(),
         )
+    }
+
+    #[test]
+    fn a_key_after_a_step_of_the_mouse_counts_after_it() {
+        let key = |key| Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        let mut harness = Harness::new_ui_state(
+            |ui, taken: &mut [Vec<Command>; 2]| {
+                let (early, late) = pressed(ui.ctx());
+                taken[0].extend(early);
+                taken[1].extend(late);
+            },
+            Default::default(),
+        );
+        harness.event(key(Key::F));
+        harness.event(Event::PointerMoved([3.0, 3.0].into()));
+        harness.event(key(Key::R));
+        harness.step();
+        assert_eq!(harness.state(), &[vec![Command::Fit], vec![Command::Reset]]);
     }
 
     #[test]
@@ -300,7 +330,7 @@ mod tests {
                 let label = ui.label("text");
                 let field = ui.text_edit_singleline(text).labelled_by(label.id);
                 field.request_focus();
-                commands.extend(pressed(ui.ctx()));
+                commands.extend(pressed(ui.ctx()).0);
             },
             (String::new(), Vec::new()),
         );

@@ -16,6 +16,7 @@ mod canvases;
 mod chooser;
 mod display;
 mod draw;
+mod entities;
 mod handles;
 mod hints;
 mod inspect;
@@ -33,6 +34,7 @@ mod properties;
 mod recent;
 mod rendering;
 mod save;
+mod scene_watch;
 mod screen;
 mod selection;
 mod session;
@@ -44,11 +46,13 @@ mod status;
 mod undo;
 mod values;
 mod viewport;
+mod wanted;
 mod watch;
 mod worker;
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use eframe::egui;
 use eframe::egui_wgpu;
@@ -58,7 +62,7 @@ use crate::gpu::adapters::{self, Opened};
 use crate::gpu::device::Gpu;
 use crate::settings::Settings;
 use app::App;
-use shell::Shell;
+use shell::{Shell, Waker};
 use winit::event_loop::EventLoop;
 
 /// What to show.
@@ -150,9 +154,16 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     let events = builder.build().map_err(no_display)?;
     let started = Arc::new(Mutex::new(Err(String::from("no window was made"))));
     let start = Arc::clone(&started);
+    let waker = Waker::new(events.create_proxy());
     let devices = Devices {
         gpu: Arc::clone(&gpu),
         window: Arc::clone(&window),
+        waker: waker.clone(),
+    };
+    let settling = if devices.are_one() {
+        Duration::ZERO
+    } else {
+        shell::SETTLING
     };
     let inner = eframe::create_native(
         "plumb",
@@ -177,6 +188,8 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
         inner,
         window: Arc::clone(&window),
         resized: None,
+        waker,
+        settling,
     };
     events.run_app(&mut shell).map_err(no_display)?;
     drop(shell);
@@ -186,12 +199,21 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     Ok(window.check()?)
 }
 
-/// The devices of a preview.
+/// The devices of a preview, and its event loop.
 struct Devices {
     /// Renders.
     gpu: Arc<Gpu>,
     /// Draws the window; perhaps the same.
     window: Arc<Gpu>,
+    /// Asks for frames.
+    waker: Waker,
+}
+
+impl Devices {
+    /// Whether one does both; else the host draws the window, and the device copies it there.
+    fn are_one(&self) -> bool {
+        Arc::ptr_eq(&self.gpu, &self.window)
+    }
 }
 
 /// The device that renders, and that which draws the window.

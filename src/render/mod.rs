@@ -25,6 +25,7 @@ use std::{fs, io};
 
 use crate::certify::pixels::PixelDecider;
 use crate::cores;
+use crate::cpu::pixel::ExactTracer;
 use crate::files::reason;
 use crate::gpu::GpuError;
 use crate::gpu::bands::DISPATCH_SECONDS;
@@ -175,7 +176,31 @@ pub fn render_with(
     // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
     start_threads(settings)?;
     let source = Source::Devices(devices);
-    run(scene, settings, source, None, &|| false, emit)
+    run(scene, settings, source, None, None, &|| false, emit)
+}
+
+/// The same of a scene that is prepared already, for the view that the settings ask for.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_prepared<'a>(
+    scene: &'a Scene,
+    settings: &Settings,
+    devices: &Devices,
+    prepared: ExactTracer<'a>,
+    emit: &mut Emit<'_>,
+) -> Result<Report, Error> {
+    start_threads(settings)?;
+    let source = Source::Devices(devices);
+    run(
+        scene,
+        settings,
+        source,
+        Some(prepared),
+        None,
+        &|| false,
+        emit,
+    )
 }
 
 /// The same as one of many pictures: prepares the scene, waits for the turn, and passes it on when all rows are made,
@@ -192,7 +217,7 @@ pub fn render_in_turn(
 ) -> Result<Report, Error> {
     start_threads(settings)?;
     let source = Source::Devices(devices);
-    run(scene, settings, source, Some(turn), &|| false, emit)
+    run(scene, settings, source, None, Some(turn), &|| false, emit)
 }
 
 /// The same on a device that somebody else has opened, and alone; the CPU goes on where it fails. The thread that keeps
@@ -207,7 +232,8 @@ pub fn render_live(
     live: &Live<'_>,
     emit: &mut Emit<'_>,
 ) -> Result<Report, Error> {
-    run(scene, settings, Source::Live(live), None, live.stop, emit)
+    let source = Source::Live(live);
+    run(scene, settings, source, None, None, live.stop, emit)
 }
 
 /// Starts the CPU threads that all pictures share, where they are wanted.
@@ -237,10 +263,11 @@ fn check_rows(scene: &Scene, settings: &Settings) -> Result<(), Error> {
     Ok(())
 }
 
-fn run(
-    scene: &Scene,
+fn run<'a>(
+    scene: &'a Scene,
     settings: &Settings,
     source: Source<'_>,
+    prepared: Option<ExactTracer<'a>>,
     turn: Option<&Turn<'_>>,
     stop: &StopRequested<'_>,
     emit: &mut Emit<'_>,
@@ -257,7 +284,10 @@ fn run(
     watch.lap(Phase::Threads);
     let [width, height] = scene.camera.pixeldim;
     let jitter = Arc::new(settings.sampling(width, settings.rows_of(height).end));
-    let decider = PixelDecider::new(scene, settings, &jitter).stopping(stop);
+    let mut decider = PixelDecider::new(scene, settings, &jitter).stopping(stop);
+    if let Some(prepared) = prepared {
+        decider = decider.prepared(prepared);
+    }
     let rendering = Rendering::new(scene, settings, &jitter, decider, pool.as_ref(), stop);
     let told = rendering.run(source, turn, emit, &mut watch)?;
     drop(rendering);

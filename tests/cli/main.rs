@@ -11,6 +11,8 @@ mod cluster;
 mod desk;
 mod endings;
 mod errors;
+#[cfg(target_os = "linux")]
+mod examples;
 mod files;
 mod gpu;
 mod inspect;

@@ -2,26 +2,32 @@
 
 use std::fs;
 
-use super::desk::{Desk, LIT, scenes};
+use super::desk::{Desk, LIT, Ran, scenes};
 
 const PART: &str = "a.png.parts/a.2-of-3.plumbpart";
+
+/// Makes a part of a scene's picture.
+#[track_caller]
+fn part(desk: &Desk, scene: &str, output: &str, part: &str, options: &[&str]) -> Ran {
+    let args = [
+        "render",
+        scene,
+        "-o",
+        output,
+        "--part",
+        part,
+        "--backend",
+        "cpu",
+    ];
+    desk.run(&[&args[..], options].concat()).ends(0)
+}
 
 /// A desk with three parts of a picture.
 fn parts(output: &str, options: &[&str]) -> Desk {
     let desk = Desk::new();
     desk.write("lit.txt", LIT);
-    for part in ["2/3", "3/3", "1/3"] {
-        let args = [
-            "render",
-            "lit.txt",
-            "-o",
-            output,
-            "--part",
-            part,
-            "--backend",
-            "cpu",
-        ];
-        desk.run(&[&args[..], options].concat()).ends(0);
+    for number in ["2/3", "3/3", "1/3"] {
+        part(&desk, "lit.txt", output, number, options);
     }
     desk
 }
@@ -89,26 +95,14 @@ fn streams_get_a_picture_that_is_right_or_nothing() {
 fn a_part_that_is_right_is_kept() {
     let desk = parts("a.png", &[]);
     let good = desk.read(PART);
-    let render = [
-        "render",
-        "lit.txt",
-        "-o",
-        "a.png",
-        "--part",
-        "2/3",
-        "--backend",
-        "cpu",
-    ];
-    let kept = desk.run(&render).ends(0);
+    let render = |options: &[&str]| part(&desk, "lit.txt", "a.png", "2/3", options);
+    let kept = render(&[]);
     assert!(
         kept.stderr.contains("is there and right"),
         "{}",
         kept.stderr
     );
-    let json = desk
-        .run(&[&render[..], &["--json"]].concat())
-        .ends(0)
-        .text();
+    let json = render(&["--json"]).text();
     assert!(json.contains("\"made\": false"), "{json}");
     // Every byte counts: where it is another, the part is another.
     for at in (0..good.len())
@@ -118,7 +112,7 @@ fn a_part_that_is_right_is_kept() {
         let mut bytes = good.clone();
         bytes[at] ^= 0x10;
         fs::write(desk.path(PART), &bytes).unwrap();
-        let made = desk.run(&render).ends(0);
+        let made = render(&[]);
         assert!(
             made.stderr.contains("; it is made again"),
             "{at}: {}",
@@ -134,7 +128,7 @@ fn a_part_that_is_right_is_kept() {
         (&[b'x'; 4000], "no part of a picture"),
     ] {
         fs::write(desk.path(PART), bytes).unwrap();
-        let made = desk.run(&render).ends(0);
+        let made = render(&[]);
         assert!(made.stderr.contains(why), "{}", made.stderr);
         assert_eq!(desk.read(PART), good);
     }
@@ -143,7 +137,7 @@ fn a_part_that_is_right_is_kept() {
         .replace("material glass", "# a comment\nmaterial glass")
         .replace("stone", "rock");
     desk.write("lit.txt", &names);
-    let kept = desk.run(&render).ends(0);
+    let kept = render(&[]);
     assert!(
         kept.stderr.contains("is there and right"),
         "{}",
@@ -154,17 +148,17 @@ fn a_part_that_is_right_is_kept() {
         &["--max-path", "3"],
         &["--rows", "1.."],
     ] {
-        let made = desk.run(&[&render[..], options].concat()).ends(0);
+        let made = render(options);
         assert!(
             made.stderr.contains("of another picture"),
             "{}",
             made.stderr
         );
         assert_ne!(desk.read(PART), good);
-        desk.run(&render).ends(0);
+        render(&[]);
     }
     desk.write("lit.txt", &LIT.replace("radius 0.7", "radius 0.71"));
-    let made = desk.run(&render).ends(0);
+    let made = render(&[]);
     assert!(
         made.stderr.contains("of another picture"),
         "{}",
@@ -187,23 +181,13 @@ fn a_texture_is_a_part_of_the_scene() {
     let picture = "texture wood { filename wood.ppm }\n\
         texplane frame { material grey normal 0 0 1 point 2 2 -2 xdir 1 0 0 dimensions 2 1 texname wood mode 0 }\n";
     desk.write("framed.txt", &[super::desk::ROOM, picture].concat());
-    let render = [
-        "render",
-        "framed.txt",
-        "-o",
-        "a.ppm",
-        "--part",
-        "1/2",
-        "--backend",
-        "cpu",
-    ];
     for (texels, made) in [(b"abcdef", true), (b"abcdef", false), (b"abcdeg", true)] {
         fs::write(
             desk.path("wood.ppm"),
             [&b"P6 2 1 255\n"[..], texels].concat(),
         )
         .unwrap();
-        let told = desk.run(&render).ends(0).stderr;
+        let told = part(&desk, "framed.txt", "a.ppm", "1/2", &[]).stderr;
         assert_eq!(told.contains("is there and right"), !made, "{told}");
     }
 }
@@ -216,18 +200,8 @@ fn what_is_missing_is_listed() {
         .fails_with(&["no parts of this picture", "--parts"]);
     let join = ["join", "a.ppm", "--parts", "20"];
     assert_eq!(desk.run(&join).ends(1).text(), "1-20\n");
-    for part in ["1/20", "2/20", "5/20", "17/20", "20/20"] {
-        desk.run(&[
-            "render",
-            "room.txt",
-            "-o",
-            "a.ppm",
-            "--part",
-            part,
-            "--backend",
-            "cpu",
-        ])
-        .ends(0);
+    for number in ["1/20", "2/20", "5/20", "17/20", "20/20"] {
+        part(&desk, "room.txt", "a.ppm", number, &[]);
     }
     let told = desk.run(&["join", "a.ppm"]).ends(1);
     assert_eq!(told.text(), "3-4,6-16,18-19\n");
@@ -237,17 +211,7 @@ fn what_is_missing_is_listed() {
         told.stderr
     );
     // Parts of another cut beside them.
-    desk.run(&[
-        "render",
-        "room.txt",
-        "-o",
-        "a.ppm",
-        "--part",
-        "1/2",
-        "--backend",
-        "cpu",
-    ])
-    .ends(0);
+    part(&desk, "room.txt", "a.ppm", "1/2", &[]);
     desk.run(&["join", "a.ppm"])
         .fails_with(&["into 2 and 20 parts", "--parts"]);
     assert_eq!(
@@ -255,17 +219,7 @@ fn what_is_missing_is_listed() {
         "2\n"
     );
     // Bytes are no values.
-    desk.run(&[
-        "render",
-        "room.txt",
-        "-o",
-        "a.ppm",
-        "--part",
-        "2/2",
-        "--backend",
-        "cpu",
-    ])
-    .ends(0);
+    part(&desk, "room.txt", "a.ppm", "2/2", &[]);
     desk.run(&["join", "a.exr", "--parts", "2", "--parts-in", "a.ppm.parts"])
         .fails_with(&["the parts have bytes"]);
     desk.run(&["join", "a.png", "--parts", "2", "--parts-in", "a.ppm.parts"])
@@ -300,17 +254,6 @@ fn what_parts_cannot_have_is_refused() {
     }
     desk.run(&["render", "room.txt", "-o", "-", "--part", "1/2"])
         .fails_with(&["give one with -o"]);
-    let large = [
-        "render",
-        "room.txt",
-        "-o",
-        "a.exr",
-        "--size",
-        "20000x20000",
-        "--part",
-        "1/2",
-    ];
-    desk.run(&large).fails_with(&["kept in memory"]);
     assert_eq!(desk.names(), ["room.txt"]);
 }
 

@@ -12,7 +12,7 @@ use super::desk::{Desk, LIT};
 fn a_killed_rendering_goes_on() {
     let desk = Desk::new();
     desk.write("lit.txt", LIT);
-    let options = ["--backend", "cpu", "--size", "320x240", "--samples", "20"];
+    let options = ["--backend", "cpu", "--size", "200x150", "--samples", "20"];
     let args = |output| [&["render", "lit.txt", "-o", output][..], &options].concat();
     let resume = [&args("a.png")[..], &["--resume"]].concat();
     // By chance, but the same at every run.
@@ -56,7 +56,7 @@ fn a_killed_rendering_goes_on() {
 #[test]
 fn a_full_disk_costs_a_part() {
     let desk = Desk::new();
-    let options = "--backend cpu --size 400x3000 --samples 4";
+    let options = "--backend cpu --size 400x1500 --samples 4";
     let line = |limit: &str, output: &str, more: &str| {
         format!(
             "trap '' XFSZ; ulimit -f {limit}; exec {} render room.txt -o {output} {options} {more}",
@@ -72,7 +72,7 @@ fn a_full_disk_costs_a_part() {
             .unwrap()
     };
     // Parts fit, the picture does not.
-    let full = shell(&line("2000", "a.ppm", "--resume"));
+    let full = shell(&line("1600", "a.ppm", "--resume"));
     let told = String::from_utf8_lossy(&full.stderr);
     assert_eq!(full.status.code(), Some(2), "{told}");
     assert!(told.contains("writing a.ppm failed"), "{told}");

@@ -1,15 +1,17 @@
 //! A picture that is made in parts: one of them, or all that are missing and the picture of them.
 
+use std::cell::Cell;
 use std::fs;
 use std::io;
 use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use plumb::cpu::pixel::ExactTracer;
 use plumb::image::{Finished, Format, Metadata, OutputError, Target, check_size};
 use plumb::parts::{Cut, Folder, Identity, PartError, Splitter, State, Survey, Work};
 use plumb::probe::digits::count;
-use plumb::render::{self, Backend, Report, Settings};
+use plumb::render::{self, Backend, Band, Report, Settings};
 use serde::Serialize;
 
 use super::lock::Lock;
@@ -29,6 +31,8 @@ pub(super) struct Picture<'a> {
     pub(super) folder: Folder,
     cut: Cut,
     identity: Identity,
+    /// The scene as it was prepared for the estimate of its work, until the first rendering takes it.
+    prepared: Cell<Option<ExactTracer<'a>>>,
 }
 
 /// What `--json` prints of a part.
@@ -78,7 +82,9 @@ impl<'a> Picture<'a> {
         let rows = settings.rows_of(height);
         check_size(format, width, rows.len() as u32)?;
         let parts = job.part.map(|part| part.parts);
-        let work = Work::estimate(scene, &settings, &rows, parts.unwrap_or(1));
+        let prepared = ExactTracer::new(scene, settings.view());
+        let prepared_scene = (scene, &prepared);
+        let work = Work::estimate(prepared_scene, &settings, &rows, parts.unwrap_or(1));
         let parts = parts.unwrap_or_else(|| {
             let pixels = u64::from(width) * rows.len() as u64;
             let bytes = pixels * if settings.values { 15 } else { 3 };
@@ -97,6 +103,7 @@ impl<'a> Picture<'a> {
             format,
             settings,
             cut,
+            prepared: Cell::new(Some(prepared)),
         })
     }
 
@@ -265,11 +272,15 @@ impl<'a> Picture<'a> {
             return (Err(io::Error::other(error).into()), Vec::new());
         }
         let mut progress = Progress::new(rows.len() as u64, self.command.talks());
-        let rendered = render::render_with(scene, &settings, devices(), &mut |band| {
+        let emit = &mut |band: &Band| {
             splitter.write(band)?;
             progress.add(band.rows.len() as u64);
             Ok(())
-        });
+        };
+        let rendered = match self.prepared.take() {
+            Some(prepared) => render::render_prepared(scene, &settings, devices(), prepared, emit),
+            None => render::render_with(scene, &settings, devices(), emit),
+        };
         progress.clear();
         (rendered, splitter.made().to_vec())
     }

@@ -2,7 +2,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::quote::{line, quoted};
 use crate::cli::SOFTWARE;
@@ -29,6 +29,8 @@ pub(super) enum What {
     /// A picture of each scene, shared among so many tasks.
     Frames {
         pictures: Vec<(PathBuf, PathBuf)>,
+        /// What names them all.
+        output: PathBuf,
         tasks: u32,
     },
 }
@@ -83,9 +85,13 @@ impl Script {
         add(b")\n\n");
         match &self.what {
             What::Parts { .. } => add(&self.parts()),
-            What::Frames { pictures, tasks } => {
+            What::Frames {
+                pictures,
+                output,
+                tasks,
+            } => {
                 add(&lists(pictures, *tasks));
-                add(&self.frames());
+                add(&self.frames(output));
             }
         }
         text
@@ -119,6 +125,7 @@ impl Script {
             What::Frames {
                 ref pictures,
                 tasks,
+                ..
             } => format!("{} pictures, by {tasks} tasks", pictures.len()),
         };
         // Where writing into a text fails there is no memory either.
@@ -208,12 +215,16 @@ fi
         text
     }
 
-    fn frames(&self) -> Vec<u8> {
+    fn frames(&self, output: &Path) -> Vec<u8> {
         let mut text = Vec::new();
         let mut add = |more: &[u8]| text.extend(more);
+        let mut option = OsString::from("--output=");
+        option.push(output);
         add(RENDER_FRAMES);
+        add(&quoted(&option));
+        add(b" ");
         add(&self.render_options());
-        add(b" || code=$?\n    done\n");
+        add(b" || code=$?\n    fi\n");
         add(self.again().as_bytes());
         add(SUBMIT_FRAMES.as_bytes());
         text
@@ -265,14 +276,17 @@ job=$(sbatch --parsable --job-name=join "${options[@]}" "${after[@]}" --requeue 
 echo "the picture: job ${job%%;*}, behind them"
 "#;
 
-/// Renders the frames of a task.
+/// Renders the frames of a task, all in one run, which opens a device and compiles a shader once.
 const RENDER_FRAMES: &[u8] = br#"if [ -n "${SLURM_ARRAY_TASK_ID-}" ]; then
     code=0
+    mine=()
     for ((i = SLURM_ARRAY_TASK_ID - 1; i < ${#scenes[@]}; i += tasks)); do
-        if [ -n "${PLUMB_MISSING-}" ] && [ -e "${pictures[i]}" ]; then
-            continue
+        if [ -z "${PLUMB_MISSING-}" ] || [ ! -e "${pictures[i]}" ]; then
+            mine+=("${scenes[i]}")
         fi
-        "$plumb" render "${scenes[i]}" -o "${pictures[i]}" "#;
+    done
+    if [ "${#mine[@]}" -gt 0 ]; then
+        "$plumb" render "${mine[@]}" "#;
 
 /// Submits frames.
 const SUBMIT_FRAMES: &str = r#"
