@@ -1,8 +1,8 @@
 //! The window: brings together the file, the pictures, the panels, and what the user does.
 //!
 //! Here are its parts, and a frame; `doing` has what keys and panels ask for, `hands` what the mouse does on the
-//! picture, `asking` what is wanted to be known of it, `opening` how another scene comes, `leaving` what is asked before
-//! the window closes; `events` has what other threads tell, `telling` what the user is told.
+//! picture, `asking` what is wanted to be known of it, `opening` how another scene comes, `leaving` what is asked
+//! before the window closes; `events` has what other threads tell, `telling` what the user is told.
 
 mod asking;
 mod doing;
@@ -119,13 +119,12 @@ impl App {
         } else {
             painter::install(state, &creation.egui_ctx);
         }
-        let Devices { gpu, window, waker } = devices;
+        let Devices { gpu, window } = devices;
         window.check()?;
         let (sender, events) = mpsc::channel();
         let teller = Teller {
             events: sender,
             context: creation.egui_ctx.clone(),
-            waker,
         };
         let tell = teller.clone();
         let canvases = Canvases::new(&gpu, &window)?;

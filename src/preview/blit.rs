@@ -1,6 +1,6 @@
 //! Brings a texture as large as the window into the window: what was drawn once is copied in every frame.
 
-use eframe::egui_wgpu::{RenderState, wgpu};
+use eframe::egui_wgpu::wgpu;
 
 /// What is drawn is bytes, whatever the window's surface is made of.
 pub(super) const DRAWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -25,10 +25,9 @@ impl Drawn {
 
 impl Blit {
     /// Compiles the shader for the window's surface.
-    pub(super) fn new(state: &RenderState) -> Self {
-        let entry = entry(state.target_format);
+    pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let wgsl = String::from(include_str!("blit.wgsl"));
-        let pipeline = pipeline(&state.device, "blit", wgsl, entry, state.target_format);
+        let pipeline = pipeline(device, "blit", wgsl, entry(format), format);
         Self { pipeline }
     }
 
@@ -69,7 +68,7 @@ impl Blit {
 }
 
 /// What writes bytes into a surface of this format, so that they are shown as they are.
-pub(super) fn entry(format: wgpu::TextureFormat) -> &'static str {
+fn entry(format: wgpu::TextureFormat) -> &'static str {
     if format.is_srgb() { "linear" } else { "bytes" }
 }
 

@@ -178,8 +178,8 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ("Ctrl+Q", "close"),
 ];
 
-/// The commands of the keys that were pressed, unless a field of text has them: those before anything that the mouse did
-/// in this frame, and those after. Those that concern the window as a whole it has not: see [`leaves_field`].
+/// The commands of the keys that were pressed, unless a field of text has them: those before anything that the mouse
+/// did in this frame, and those after. Those that concern the window as a whole it has not: see [`leaves_field`].
 pub(super) fn pressed(context: &Context) -> (Vec<Command>, Vec<Command>) {
     if context.egui_wants_keyboard_input() {
         return Default::default();
@@ -260,19 +260,17 @@ mod tests {
             repeat: false,
             modifiers: Modifiers::NONE,
         };
-        let mut harness = Harness::new_ui_state(
-            |ui, taken: &mut [Vec<Command>; 2]| {
-                let (early, late) = pressed(ui.ctx());
-                taken[0].extend(early);
-                taken[1].extend(late);
-            },
-            Default::default(),
-        );
-        harness.event(key(Key::F));
-        harness.event(Event::PointerMoved([3.0, 3.0].into()));
-        harness.event(key(Key::R));
-        harness.step();
-        assert_eq!(harness.state(), &[vec![Command::Fit], vec![Command::Reset]]);
+        let input = eframe::egui::RawInput {
+            events: vec![
+                key(Key::F),
+                Event::PointerMoved([3.0, 3.0].into()),
+                key(Key::R),
+            ],
+            ..Default::default()
+        };
+        let mut taken = Default::default();
+        let _ = Context::default().run_ui(input, |ui| taken = pressed(ui.ctx()));
+        assert_eq!(taken, (vec![Command::Fit], vec![Command::Reset]));
     }
 
     #[test]

@@ -11,6 +11,7 @@
 
 mod adaptive_resolution;
 mod app;
+mod arenas;
 mod blit;
 mod canvases;
 mod chooser;
@@ -52,7 +53,6 @@ mod worker;
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
 use eframe::egui;
 use eframe::egui_wgpu;
@@ -62,7 +62,7 @@ use crate::gpu::adapters::{self, Opened};
 use crate::gpu::device::Gpu;
 use crate::settings::Settings;
 use app::App;
-use shell::{Shell, Waker};
+use shell::Shell;
 use winit::event_loop::EventLoop;
 
 /// What to show.
@@ -113,6 +113,7 @@ pub enum PreviewError {
 /// # Errors
 /// Any [`PreviewError`].
 pub fn run(options: Options) -> Result<(), PreviewError> {
+    arenas::share();
     let (gpu, drawn_with) = open(options.settings.adapter.as_deref())?;
     let window = drawn_with.gpu;
     let setup = egui_wgpu::WgpuSetupExisting {
@@ -154,16 +155,9 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     let events = builder.build().map_err(no_display)?;
     let started = Arc::new(Mutex::new(Err(String::from("no window was made"))));
     let start = Arc::clone(&started);
-    let waker = Waker::new(events.create_proxy());
     let devices = Devices {
         gpu: Arc::clone(&gpu),
         window: Arc::clone(&window),
-        waker: waker.clone(),
-    };
-    let settling = if devices.are_one() {
-        Duration::ZERO
-    } else {
-        shell::SETTLING
     };
     let inner = eframe::create_native(
         "plumb",
@@ -188,8 +182,6 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
         inner,
         window: Arc::clone(&window),
         resized: None,
-        waker,
-        settling,
     };
     events.run_app(&mut shell).map_err(no_display)?;
     drop(shell);
@@ -199,14 +191,12 @@ pub fn run(options: Options) -> Result<(), PreviewError> {
     Ok(window.check()?)
 }
 
-/// The devices of a preview, and its event loop.
+/// The devices of a preview.
 struct Devices {
     /// Renders.
     gpu: Arc<Gpu>,
     /// Draws the window; perhaps the same.
     window: Arc<Gpu>,
-    /// Asks for frames.
-    waker: Waker,
 }
 
 impl Devices {

@@ -5,7 +5,6 @@
 //! before it comes to the driver (a plugin's hook), what looks otherwise than before is found ([`tiles`]), that alone
 //! is painted ([`triangles`], [`picture`]), and the driver is left with copying the frame into the window.
 
-mod copy;
 mod picture;
 mod textures;
 mod tiles;
@@ -14,11 +13,13 @@ mod triangles;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use eframe::egui::{Context, FullOutput, Plugin, Rect};
-use eframe::egui_wgpu::{Callback, RenderState};
-use eframe::epaint::{ClippedPrimitive, ClippedShape, PaintCallback, Primitive};
+use eframe::egui_wgpu::{
+    Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu,
+};
+use eframe::epaint::{ClippedPrimitive, ClippedShape, PaintCallback, PaintCallbackInfo, Primitive};
 
+use super::blit::{Blit, Drawn};
 use super::draw::Draw;
-use copy::{Copied, Copy};
 use picture::Cached;
 use textures::Textures;
 use tiles::{Seen, Tiles};
@@ -98,8 +99,10 @@ struct HostPainter {
 
 /// Paints the window on the host from now on.
 pub(super) fn install(state: &RenderState, context: &Context) {
-    let copied = Copied::new(state);
-    state.renderer.write().callback_resources.insert(copied);
+    state.renderer.write().callback_resources.insert(Copied {
+        blit: Blit::new(&state.device, state.target_format),
+        drawn: None,
+    });
     context.add_plugin(HostPainter::default());
 }
 
@@ -196,4 +199,97 @@ impl Plugin for HostPainter {
         let shape = Callback::new_paint_callback(rect, copy);
         output.shapes = vec![ClippedShape::new(rect, shape)];
     }
+}
+
+/// What the frame is copied with; kept by egui's renderer.
+struct Copied {
+    blit: Blit,
+    drawn: Option<Drawn>,
+}
+
+/// The frame, to be copied into the window.
+struct Copy(Shared);
+
+impl CallbackTrait for Copy {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        _descriptor: &ScreenDescriptor,
+        _encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        let Some(copied) = resources.get_mut::<Copied>() else {
+            return Vec::new();
+        };
+        let mut frame = lock(&self.0);
+        let mut fresh = std::mem::take(&mut frame.fresh);
+        if copied
+            .drawn
+            .as_ref()
+            .is_none_or(|it| it.size() != frame.size)
+        {
+            copied.drawn = Some(copied.blit.texture(device, frame.size));
+            fresh = vec![Part::whole(frame.size)];
+        }
+        let Some(drawn) = &copied.drawn else {
+            return Vec::new();
+        };
+        for part in fresh {
+            upload(queue, &drawn.texture, &frame, part);
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _info: PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        if let Some(copied) = resources.get::<Copied>()
+            && let Some(drawn) = &copied.drawn
+        {
+            copied.blit.paint(pass, drawn);
+        }
+    }
+}
+
+/// Hands a part of the frame to the driver.
+fn upload(queue: &wgpu::Queue, texture: &wgpu::Texture, frame: &Frame, part: Part) {
+    let [width, height] = [0, 1].map(|i| part.to[i] - part.from[i]);
+    let pitch = 4 * frame.size[0];
+    let offset = 4 * (u64::from(part.from[1]) * u64::from(frame.size[0]) + u64::from(part.from[0]));
+    queue.write_texture(
+        wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d {
+                x: part.from[0],
+                y: part.from[1],
+                z: 0,
+            },
+            ..texture.as_image_copy()
+        },
+        bytemuck::cast_slice(&frame.pixels),
+        wgpu::TexelCopyBufferLayout {
+            offset,
+            bytes_per_row: Some(pitch),
+            rows_per_image: None,
+        },
+        wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+    );
+}
+
+/// The pixels of the part of a window that a picture covers, as the host draws it.
+#[cfg(test)]
+pub(super) fn drawn(draw: &Draw, window: [u32; 2]) -> Vec<u32> {
+    let [left, top, width, height] = draw.covers(window);
+    let covered = Part {
+        from: [left, top],
+        to: [left + width, top + height],
+    };
+    picture::drawn(draw, covered)
 }

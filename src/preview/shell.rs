@@ -1,15 +1,13 @@
-//! The event loop: hands winit's events to eframe, keeps the other threads' work from the device while the surface
-//! changes its size, and frames that may wait from those that may not.
+//! The event loop: hands winit's events to eframe, and keeps the other threads' work from the device while the surface
+//! changes its size.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Context, ViewportId};
 use eframe::{EframeWinitApplication, UserEvent};
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::event_loop::ActiveEventLoop;
 use winit::window::WindowId;
 
 use crate::gpu::device::Gpu;
@@ -21,49 +19,6 @@ pub(super) struct Shell<'a> {
     pub(super) window: Arc<Gpu>,
     /// When the size changed last.
     pub(super) resized: Option<Instant>,
-    /// Asks for frames at once.
-    pub(super) waker: Waker,
-    /// How long frames wait that egui asks for by itself.
-    pub(super) settling: Duration,
-}
-
-/// How long they wait where the host draws the window. egui draws two more frames after each event, in case something
-/// moved under the mouse, and draws while something fades. Each would keep the next event waiting.
-pub(super) const SETTLING: Duration = Duration::from_millis(40);
-
-/// Asks for a frame, from any thread, that is not to wait.
-#[derive(Debug, Clone)]
-pub(super) struct Waker {
-    events: EventLoopProxy<UserEvent>,
-    /// Whether a frame was asked for since the loop last heard of one.
-    asked: Arc<AtomicBool>,
-}
-
-impl Waker {
-    pub(super) fn new(events: EventLoopProxy<UserEvent>) -> Self {
-        Self {
-            events,
-            asked: Arc::default(),
-        }
-    }
-
-    /// Asks. What the frame is to show has been told before.
-    pub(super) fn wake(&self, context: &Context) {
-        self.asked.store(true, Ordering::Release);
-        // egui would tell the loop nothing where it has asked for a frame already, which may be one that waits.
-        let asks = UserEvent::RequestRepaint {
-            viewport_id: ViewportId::ROOT,
-            when: Instant::now(),
-            cumulative_pass_nr: context.cumulative_pass_nr_for(ViewportId::ROOT),
-        };
-        // A loop that has ended has nothing to draw.
-        let _ = self.events.send_event(asks);
-    }
-
-    /// Whether somebody asked.
-    fn take(&self) -> bool {
-        self.asked.swap(false, Ordering::Acquire)
-    }
 }
 
 /// So long after a change of the size frames may set the surface up anew.
@@ -109,15 +64,7 @@ impl ApplicationHandler<UserEvent> for Shell<'_> {
         self.done();
     }
 
-    fn user_event(&mut self, active: &ActiveEventLoop, mut event: UserEvent) {
-        // What the mouse and the keys do is drawn at once without being asked for.
-        let now = Instant::now();
-        if let UserEvent::RequestRepaint { when, .. } = &mut event
-            && *when <= now
-            && !self.waker.take()
-        {
-            *when = now + self.settling;
-        }
+    fn user_event(&mut self, active: &ActiveEventLoop, event: UserEvent) {
         self.inner.user_event(active, event);
         self.done();
     }

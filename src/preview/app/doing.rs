@@ -26,8 +26,8 @@ use crate::preview::wanted::Wanted;
 use crate::scene::{self, EntityId, LoadError, Scene};
 
 impl App {
-    /// The keys that were struck since the last frame, unless something is asked. What the mouse did before a key counts
-    /// before it: such keys are returned, to be obeyed once panels and picture have taken the mouse.
+    /// The keys that were struck since the last frame, unless something is asked. What the mouse did before a key
+    /// counts before it: such keys are returned, to be obeyed once panels and picture have taken the mouse.
     pub(super) fn take_keys(&mut self, context: &Context) -> Vec<Command> {
         let presses = context.input(|input| {
             let is_press = |event: &&egui::Event| {

@@ -9,7 +9,6 @@ use eframe::egui::Context;
 use super::App;
 use crate::preview::chooser::Purpose;
 use crate::preview::inspect::Answer;
-use crate::preview::shell::Waker;
 use crate::preview::{status, worker};
 
 /// What other threads tell the window.
@@ -28,14 +27,13 @@ pub(super) enum Event {
 pub(super) struct Teller {
     pub(super) events: Sender<Event>,
     pub(super) context: Context,
-    pub(super) waker: Waker,
 }
 
 impl Teller {
     pub(super) fn tell(&self, event: Event) {
         // A window that is closed has nobody to tell.
         if self.events.send(event).is_ok() {
-            self.waker.wake(&self.context);
+            self.context.request_repaint();
         }
     }
 }

@@ -3,8 +3,6 @@
 //! as often as something moves over it.
 
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 use super::tiles::mix;
 use super::{Frame, Part};
@@ -61,63 +59,27 @@ impl Cached {
     }
 }
 
-/// So many rows are drawn by one thread before it takes others.
-const ROWS: usize = 32;
-
-/// The pixels of a part of the window that the picture covers. Threads of the window's own priority share the rows: what
-/// renders has a lower one.
-fn drawn(draw: &Draw, area: Part) -> Vec<u32> {
+/// The pixels of a part of the window that the picture covers.
+pub(super) fn drawn(draw: &Draw, area: Part) -> Vec<u32> {
     let [across, down] = [0, 1].map(|axis| -> Vec<Taps> {
         let along = area.from[axis]..area.to[axis];
         along.map(|at| Taps::new(draw, axis, at as i32)).collect()
     });
-    let mut pixels = vec![0; across.len() * down.len()];
-    if pixels.is_empty() {
-        return pixels;
-    }
-    let parts = down
-        .chunks(ROWS)
-        .zip(pixels.chunks_mut(ROWS * across.len()));
-    let others = thread::available_parallelism()
-        .map_or(1, usize::from)
-        .min(parts.len())
-        - 1;
-    let parts = Mutex::new(parts);
-    let take = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let work = || {
-        while let Some((down, pixels)) = take() {
-            draw_rows(draw, &across, down, pixels);
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..others {
-            // Where the system has no other thread, this one does it all.
-            let _ = thread::Builder::new().spawn_scoped(scope, work);
-        }
-        work();
-    });
-    if let Some(outlined) = &draw.outlined {
-        outline(draw, outlined, area, &mut pixels);
-    }
-    pixels
-}
-
-/// Draws some rows.
-fn draw_rows(draw: &Draw, across: &[Taps], down: &[Taps], pixels: &mut [u32]) {
+    let mut pixels = Vec::with_capacity(across.len() * down.len());
     // The columns of the picture that are seen. Taps lie in the order of the window's columns.
     let first = across.iter().map(|tap| tap.of[0].0).min().unwrap_or(0) as usize;
     let last = across.iter().flat_map(|tap| tap.of.last());
     let end = last.map(|(x, _)| x + 1).max().unwrap_or(0) as usize;
     let columns = draw.pixels.size[0] as usize;
     let mut sums = vec![0.0_f32; 3 * (end - first)];
-    for (line, pixels) in down.iter().zip(pixels.chunks_exact_mut(across.len())) {
+    for line in &down {
         // First the mean down each column of the picture, then along the row.
         sums.fill(0.0);
         for &(y, weight) in &line.of {
             let start = y as usize * columns;
             add(draw, start + first..start + end, weight, &mut sums);
         }
-        for (tap, pixel) in across.iter().zip(pixels) {
+        for tap in &across {
             let [mut r, mut g, mut b] = [0.5; 3];
             for &(x, weight) in &tap.of {
                 let weight = weight / (tap.weights * line.weights);
@@ -126,9 +88,13 @@ fn draw_rows(draw: &Draw, across: &[Taps], down: &[Taps], pixels: &mut [u32]) {
                 g += weight * sums[at + 1];
                 b += weight * sums[at + 2];
             }
-            *pixel = u32::from_le_bytes([r as u8, g as u8, b as u8, 255]);
+            pixels.push(u32::from_le_bytes([r as u8, g as u8, b as u8, 255]));
         }
     }
+    if let Some(outlined) = &draw.outlined {
+        outline(draw, outlined, area, &mut pixels);
+    }
+    pixels
 }
 
 /// Adds so much of the look of some pixels of a row to sums, three a pixel.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::time::{Duration, Instant};
 
-/// Until then shaders, canvases and texts of all kinds are met for the first time, and kept: memory grows. So only runs of
-/// several minutes say whether it is steady.
+/// Until then shaders, canvases and texts of all kinds are met for the first time, and kept: memory grows. So only runs
+/// of several minutes say whether it is steady.
 pub(crate) const WARM_UP: Duration = Duration::from_secs(60);
 
 /// The most that a window has in a stretch of time may be so much more than the most that it had in the first one after
