@@ -83,7 +83,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
     let toward_2 = dot(toward, toward);
     let inverse = inverseSqrt(max(toward_2, TINY_SQUARE));
     let distance = toward_2 * inverse;
-    let d = toward * inverse;
+    let d = barrier(toward * inverse);
     var c = dot(d, point.normal);
 //#if certified
     let toward_error = point.error + U * (light.size + TOWARD_ROUNDINGS * distance);

@@ -76,7 +76,7 @@ fn plane_hits_from(plane: WorldPlane, ray: SecondaryRay, range: Range) -> Inters
     let ahead = plane.offset - dot(plane.normal, ray.base);
     let along = dot(plane.normal, ray.dir);
     let inverse = 1.0 / along;
-    let t = ahead * inverse;
+    let t = barrier1(ahead * inverse);
     intersection.t = t;
 //#if certified
     let ahead_error = ray.base_error + PLANE_ROUNDINGS * U * (abs(plane.offset) + ray.size);

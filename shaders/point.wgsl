@@ -5,9 +5,9 @@
 // The primary ray as one from anywhere.
 fn as_secondary_ray(ray: Ray) -> SecondaryRay {
 //#if certified
-    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length, 0.0, DIR_ERROR, 0.0, 0.0);
+    return SecondaryRay(vec3f(0.0), barrier(ray.w * ray.inverse_length), 0.0, DIR_ERROR, 0.0, 0.0);
 //#else
-    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length);
+    return SecondaryRay(vec3f(0.0), barrier(ray.w * ray.inverse_length));
 //#end
 }
 //#end
@@ -22,7 +22,11 @@ fn locate(ray: Ray, hit: Hit) -> Point {
 //#end
 //#if position
     let s = 1.0 / hit.inverse;
+//#if lit
+    point.position = barrier(ray.w * s);
+//#else
     point.position = ray.w * s;
+//#end
 //#if certified
     let length = ray.w2 * ray.inverse_length;
     point.error = SECOND_ORDER * s * (W_ERROR + length * (s * hit.error + HIT_ROUNDINGS * U));

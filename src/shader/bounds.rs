@@ -63,7 +63,7 @@ named! {
     /// See `ROOT_FAR`.
     ROOT_FAR_FROM = 4.0;
     /// Roundings of the position of a primary hit, for a unit of its distance.
-    HIT_ROUNDINGS = 5.0, at least 4.5;
+    HIT_ROUNDINGS = 7.5, at least 7.0;
     /// The least and the largest biased exponent that a ray's weight may have in f32: it is from 2⁻⁸⁶ up to 2⁵.
     WEIGHT_LEAST = 127.0 - 86.0;
     /// See `WEIGHT_LEAST`.
@@ -71,42 +71,42 @@ named! {
     /// What products that f32 flushes may take from a lit pixel's value, where 255 is a full byte.
     FLUSHED = 1.0 / (1_u64 << 26) as f64, at least 1.0 / (1_u64 << 27) as f64;
     /// Roundings of a dot product with a plane, of its sum with an offset.
-    PLANE_ROUNDINGS = 6.0, at least 5.5;
+    PLANE_ROUNDINGS = 6.5, at least 6.0;
     /// A plane is not seen edge-on where the cosine is more than this many times its bound.
     STEEP = 2.0;
     /// 1/(1 − x) is at most 1 + this times x, for x up to 1/`STEEP`.
     STEEP_SLOPE = 2.0, at least 2.0;
     /// Roundings of the distance of a plane.
-    DISTANCE_ROUNDINGS = 8.0, at least 6.0;
+    DISTANCE_ROUNDINGS = 12.5, at least 12.0;
     /// What a bound from below is multiplied by, for the roundings of a sum, a quotient and the tests it goes into.
-    LOWERED = 0.999999, at least 1.0 - 7.5 * ROUNDING;
+    LOWERED = 0.999999, at least 1.0 - 12.0 * ROUNDING;
     /// Roundings of the distances that are compared with that of the closest hit.
     RIVAL_ROUNDINGS = 4.0, at least 3.0;
     /// Roundings of base + t·dir.
-    POSITION_ROUNDINGS = 5.0, at least 4.5;
+    POSITION_ROUNDINGS = 5.5, at least 5.0;
     /// Roundings of the normal of a plane.
-    PLANE_NORMAL_ROUNDINGS = 2.0, at least 0.5;
+    PLANE_NORMAL_ROUNDINGS = 1.5, at least 1.0;
     /// How far the perpendicular from a ray to a center turns with the direction, to the first order.
     TURN = 2.05, at least 2.0;
     /// The same, to the second order.
     TURN_MORE = 2.0;
     /// Roundings of the perpendicular from a ray to a center.
-    PERPENDICULAR_ROUNDINGS = 12.0, at least 11.0;
+    PERPENDICULAR_ROUNDINGS = 11.5, at least 11.0;
     /// x² − y² is at most |x − y|·(this·x + |x − y|).
     SQUARE_SLOPE = 2.01, at least 2.0;
     /// Roundings of r² − |perpendicular|².
-    DISC_ROUNDINGS = 12.0, at least 9.0;
+    DISC_ROUNDINGS = 11.5, at least 11.0;
     /// Roundings of a root by `inverseSqrt`, and what is added to it.
-    ROOT_ROUNDINGS = 10.0, at least 7.5;
+    ROOT_ROUNDINGS = 14.5, at least 14.0;
     /// The 1-norm of a perpendicular and what is along the ray, by this, is no less than the way from the ray's base,
     /// whatever the perpendicular is off by.
     FAR_GROWTH = 1.04, at least 1.02;
     /// Roundings of a matrix times a vector, of its sum with another.
-    GRADIENT_ROUNDINGS = 8.0, at least 6.5;
+    GRADIENT_ROUNDINGS = 7.5, at least 7.0;
     /// Roundings of the terms of a quadric's discriminant and of the quadratic's coefficients.
-    MOMENT_ROUNDINGS = 16.0, at least 12.5;
+    MOMENT_ROUNDINGS = 15.0, at least 14.0;
     /// Roundings of a border, and of its difference from a position.
-    BORDER_ROUNDINGS = 2.0, at least 1.5;
+    BORDER_ROUNDINGS = 2.5, at least 2.0;
     /// A quotient is known where its divisor is more than this many times the divisor's bound.
     QUOTIENT_FROM = 8.0;
     /// 1/(1 − 1/`QUOTIENT_FROM`), and roundings.
@@ -116,13 +116,13 @@ named! {
     /// Primary hits on quadrics nearer than this are as if they were there.
     NEAREST = 1.0 / (1_u64 << 40) as f64;
     /// Roundings of a unit normal.
-    NORMAL_ROUNDINGS = 5.0, at least 4.5;
+    NORMAL_ROUNDINGS = 7.5, at least 7.0;
     /// Roundings of a vector divided by its length.
-    DIRECTION_ROUNDINGS = 8.0, at least 7.5;
+    DIRECTION_ROUNDINGS = 10.0, at least 9.5;
     /// Roundings of a dot product of unit vectors.
-    DOT_ROUNDINGS = 5.0, at least 4.0;
+    DOT_ROUNDINGS = 5.5, at least 5.0;
     /// Roundings of a height and its quotient by a distance, but for the distance's.
-    HEIGHT_ROUNDINGS = 2.0, at least 1.75;
+    HEIGHT_ROUNDINGS = 2.5, at least 2.25;
     /// Lights, and what else a direction leads to, are farther away than this many times the bound of that.
     CLOSE_FROM = 4.0;
     /// 1/(1 − x) for x up to 1/`CLOSE_FROM`.
@@ -130,33 +130,33 @@ named! {
     /// 1/(1 − x)² is at most 1 + (this + `CLOSE`)·x for x up to 1/`CLOSE_FROM`.
     HEIGHT_SLOPE = 1.75, at least 28.0 / 9.0 - CLOSE;
     /// Roundings of the difference of two positions.
-    TOWARD_ROUNDINGS = 2.0, at least 1.0;
+    TOWARD_ROUNDINGS = 1.5, at least 1.0;
     /// Roundings of the distance of a light, which ends a shadow ray, and of what is compared with it.
-    LIMIT_ROUNDINGS = 11.0, at least 10.5;
+    LIMIT_ROUNDINGS = 13.0, at least 12.5;
     /// Roundings of how far a direction is inside of a cone.
-    CONE_ROUNDINGS = 8.0, at least 6.0;
+    CONE_ROUNDINGS = 7.5, at least 7.0;
     /// Roundings of how far a way goes along a projector's normal.
-    BEYOND_ROUNDINGS = 5.0, at least 3.5;
+    BEYOND_ROUNDINGS = 4.5, at least 4.0;
     /// Roundings of where a way crosses a projector's picture, for a unit of its length.
-    PICTURE_ROUNDINGS = 10.0, at least 8.5;
+    PICTURE_ROUNDINGS = 13.5, at least 13.0;
     /// Roundings of what a light brings.
-    LIGHT_ROUNDINGS = 24.0, at least 9.5;
+    LIGHT_ROUNDINGS = 17.0, at least 16.5;
     /// Roundings that a pane adds to the light that it lets through.
-    PANE_ROUNDINGS = 4.0, at least 3.05;
+    PANE_ROUNDINGS = 4.5, at least 4.07;
     /// Roundings of the difference of two directions.
-    HALF_ROUNDINGS = 2.0, at least 2.0;
+    HALF_ROUNDINGS = 2.5, at least 2.0;
     /// Shininess above this is left to the CPU.
     MOST_SHININESS = (1_u64 << 20) as f64;
     /// Roundings of the distance of two unit vectors, for a unit of it.
-    APART_ROUNDINGS = 12.0, at least 11.5;
+    APART_ROUNDINGS = 14.0, at least 13.5;
     /// Roundings of a power, for a unit of its logarithm to base 2.
-    LOG_ROUNDINGS = 12.0, at least 11.1;
+    LOG_ROUNDINGS = 19.5, at least 19.0;
     /// The same, whatever its logarithm is; and those of the products that make a glint of it.
-    POWER_ROUNDINGS = 20.0, at least 20.0;
+    POWER_ROUNDINGS = 25.0, at least 24.0;
     /// Roundings of a sum of colours.
-    SUM_ROUNDINGS = 2.0, at least 2.0;
+    SUM_ROUNDINGS = 3.0, at least 3.0;
     /// Roundings of the share of a colour that a ray brings.
-    SHARE_ROUNDINGS = 12.0, at least 6.5;
+    SHARE_ROUNDINGS = 13.5, at least 13.0;
     /// Half of what a ray may bring is within this share of both ends.
     HALF_OPEN = 0.51, at least 0.5001;
     /// How much a mirrored direction turns with the normal.
@@ -164,22 +164,22 @@ named! {
     /// How much a mirror whose normal is off stretches what a direction is off by.
     MIRROR_STRETCH = 5.0, at least 4.004;
     /// Roundings of the bounds of a ray's line and of its path's length, at each mirror and pane.
-    LINE_ROUNDINGS = 4.0, at least 4.0;
+    LINE_ROUNDINGS = 6.0, at least 5.0;
     /// Roundings that a mirror adds to a branch's weight.
-    WEIGHT_ROUNDINGS = 2.0, at least 1.5;
+    WEIGHT_ROUNDINGS = 2.5, at least 2.0;
     /// Roundings that a pane adds to it.
-    PANE_WEIGHT_ROUNDINGS = 5.0, at least 3.0;
+    PANE_WEIGHT_ROUNDINGS = 5.0, at least 4.0;
     /// What a mirror or pane adds to the bound of a weight, for a unit of it: its own roundings, and those of the
     /// bound.
-    WEIGHT_GROWTH = 6.0, at least 6.0;
+    WEIGHT_GROWTH = 8.0, at least 7.0;
     /// Roundings of what is left of the longest path.
-    PATH_ROUNDINGS = 2.0, at least 1.5;
+    PATH_ROUNDINGS = 2.5, at least 2.0;
     /// Roundings of a mirrored direction.
-    MIRROR_ROUNDINGS = 18.0, at least 11.0;
+    MIRROR_ROUNDINGS = 13.5, at least 13.0;
     /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
-    BOUNCE_ROUNDINGS = 30.0, at least 29.3;
+    BOUNCE_ROUNDINGS = 36.0, at least 35.3;
     /// Roundings of an index of tiles, blocks or texels.
-    INDEX_ROUNDINGS = 5.0, at least 4.5;
+    INDEX_ROUNDINGS = 5.5, at least 5.0;
     /// Indices of texels are certain up to this: there their remainder is.
     MOST_INDEX = (1_u64 << 20) as f64;
     /// The colour wheel's place is to be farther from its middle than the root of this many times its bound.
@@ -187,17 +187,17 @@ named! {
     /// How much the colours of `color_wheel` change with the place, in units of its distance.
     WHEEL_SLOPE = 3.0, at least 2.96;
     /// Roundings of the colours of `color_wheel`.
-    WHEEL_ROUNDINGS = 20.0, at least 18.5;
+    WHEEL_ROUNDINGS = 24.0, at least 22.5;
     /// Roundings that widen the tree's boxes.
-    BOX_ROUNDINGS = 4.0, at least 1.0;
+    BOX_ROUNDINGS = 4.0, at least 3.0;
     /// What a sample's error is multiplied by: the roundings of up to 2¹⁶ samples' bounds.
     SAMPLE_GROWTH = 1.01, at least 1.008;
     /// Roundings of a sum of samples.
-    SAMPLE_ROUNDINGS = 3.0, at least 2.5;
+    SAMPLE_ROUNDINGS = 3.5, at least 3.03;
 }
 
-/// The results of + − × are faithfully rounded: off by less than this, relatively.
-pub const ROUNDING: f64 = 1.0 / 8_388_608.0;
+/// The results of + − × are rounded to nearest: off by no more than this, relatively.
+pub const ROUNDING: f64 = 1.0 / 16_777_216.0;
 
 named! {
     /// The constants of the bounds that the host computes.
@@ -215,39 +215,39 @@ named! {
     /// to the power of this.
     MOST_PRODUCT = 32.0;
     /// Roundings that a form c₀X + c₁Y + c₂ and its comparison go through.
-    LINEAR_ROUNDINGS = 6.0, at least 5.5;
+    LINEAR_ROUNDINGS = 8.5, at least 8.0;
     /// The same with several samples a pixel.
-    SAMPLED_LINEAR_ROUNDINGS = 8.0, at least 7.5;
+    SAMPLED_LINEAR_ROUNDINGS = 10.5, at least 10.0;
     /// The same for a quadratic form with six coefficients.
-    QUADRATIC_ROUNDINGS = 9.0, at least 8.5;
+    QUADRATIC_ROUNDINGS = 9.5, at least 9.0;
     /// The same with several samples a pixel.
-    SAMPLED_QUADRATIC_ROUNDINGS = 18.0, at least 16.5;
+    SAMPLED_QUADRATIC_ROUNDINGS = 18.0, at least 18.0;
     /// What an offset that was rounded to f32 may be off by, in pixels.
     OFFSET_ERROR = 1.0 / 33_554_432.0;
     /// Roundings of W.
-    W_ROUNDINGS = 5.0, at least 3.75;
+    W_ROUNDINGS = 7.0, at least 6.5;
     /// Roundings of |W| and of a primary hit's distance, for a unit of κ.
-    LENGTH_ROUNDINGS = 20.0, at least 17.5;
+    LENGTH_ROUNDINGS = 28.0, at least 27.5;
     /// The same with several samples a pixel.
-    SAMPLED_LENGTH_ROUNDINGS = 23.0, at least 21.25;
+    SAMPLED_LENGTH_ROUNDINGS = 40.0, at least 39.5;
     /// Roundings of W/|W|, likewise.
-    DIR_ROUNDINGS = 12.0, at least 9.5;
+    DIR_ROUNDINGS = 14.0, at least 13.5;
     /// The same with several samples a pixel.
-    SAMPLED_DIR_ROUNDINGS = 13.0, at least 12.0;
+    SAMPLED_DIR_ROUNDINGS = 19.5, at least 19.0;
     /// Roundings of an ambient value, likewise.
-    VALUE_ROUNDINGS = 13.0, at least 11.25;
+    VALUE_ROUNDINGS = 20.0, at least 19.5;
     /// κ may be no larger.
     MOST_CONDITION = 64.0;
     /// Roundings of the fraction that is added to an index.
-    FRACTION_ROUNDINGS = 6.0, at least 4.5;
+    FRACTION_ROUNDINGS = 8.5, at least 8.0;
     /// Roundings of what is subtracted from a position for H − point.
-    FROM_POINT_ROUNDINGS = 4.0, at least 1.5;
+    FROM_POINT_ROUNDINGS = 3.0, at least 2.0;
     /// Roundings of the coordinates on a rectangle.
-    SIDES_ROUNDINGS = 8.0, at least 2.5;
+    SIDES_ROUNDINGS = 8.5, at least 8.0;
     /// Beyond a sphere's box the discriminant is below minus this share of what it would be for a circle.
     OUTLINE_SHARE = 0.1;
     /// So many roundings of all its terms lie between it and 0 there.
-    OUTLINE_ROUNDINGS = 64.0, at least 45.0;
+    OUTLINE_ROUNDINGS = 64.0, at least 46.0;
     /// The bound of a form whose border runs midway between rays, in steps of their lattice.
     STEP_ERROR = 1.0 / 8.0, at least 0.0;
     /// So many steps such a form may have.

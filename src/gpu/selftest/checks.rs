@@ -48,19 +48,19 @@ impl Pair {
 pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "x + y",
-        asked: "one of the two nearest",
+        asked: "the nearest",
         words: 0..1,
         judge: |p, w| exact::sum(p.x(), p.y(), f32::from_bits(w[0])),
     },
     Check {
         name: "x - y",
-        asked: "one of the two nearest",
+        asked: "the nearest",
         words: 1..2,
         judge: |p, w| exact::sum(p.x(), -p.y(), f32::from_bits(w[0])),
     },
     Check {
         name: "x * y",
-        asked: "one of the two nearest",
+        asked: "the nearest",
         words: 2..3,
         judge: |p, w| exact::product(p.x(), p.y(), f32::from_bits(w[0])),
     },
@@ -72,7 +72,7 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         name: "sqrt",
-        asked: "4.6 u, u = 2^-23",
+        asked: "9.2 u, u = 2^-24",
         words: 4..5,
         judge: |p, w| exact::root(p.x(), f32::from_bits(w[0])),
     },
@@ -220,19 +220,19 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         name: "literal * literal",
-        asked: "one of the two nearest",
+        asked: "the nearest",
         words: 32..33,
         judge: |_, w| exact::product(LITERALS[0], LITERALS[1], f32::from_bits(w[0])),
     },
     Check {
         name: "x * literal",
-        asked: "one of the two nearest",
+        asked: "the nearest",
         words: 33..34,
         judge: |p, w| exact::product(p.x(), LITERALS[0], f32::from_bits(w[0])),
     },
     Check {
         name: "x + literal",
-        asked: "one of the two nearest",
+        asked: "the nearest",
         words: 34..35,
         judge: |p, w| exact::sum(p.x(), LITERALS[1], f32::from_bits(w[0])),
     },
@@ -253,7 +253,7 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         name: "dot",
-        asked: "3 u of the sum of the terms' sizes, u = 2^-23",
+        asked: "3 u of the sum of the terms' sizes, u = 2^-24",
         words: 37..38,
         judge: |p, w| {
             let [x, y] = p.ordinary()?;

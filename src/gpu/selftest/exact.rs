@@ -6,6 +6,9 @@
 /// 2³¹.
 pub(super) const TWO_31: f32 = 2_147_483_648.0;
 
+/// What rounding to nearest may take, relatively.
+const U: f64 = 0.5 * f32::EPSILON as f64;
+
 /// Results above this are not asked for: the certified path has none.
 const HUGE: f64 = 1e38;
 
@@ -27,6 +30,18 @@ pub(super) fn nearest_two(high: f64, low: f64, result: f32) -> bool {
     (below < high || (below == high && low > 0.0)) && (high < above || (high == above && low < 0.0))
 }
 
+/// Whether `result` is the f32 nearest to `high + low`, either one where two are as near; where |low| is at most half a
+/// last place of `high`. A subnormal sum may be 0.
+pub(super) fn nearest(high: f64, low: f64, result: f32) -> bool {
+    if result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE) {
+        return true;
+    }
+    let midway = |next: f32| 0.5 * (f64::from(next) + f64::from(result));
+    let (least, most) = (midway(result.next_down()), midway(result.next_up()));
+    // `high` is `high + low` rounded, and rounding keeps the order.
+    (least < high || (least == high && low >= 0.0)) && (high < most || (high == most && low <= 0.0))
+}
+
 /// x + y.
 pub(super) fn sum(x: f32, y: f32, result: f32) -> Option<bool> {
     if (f64::from(x) + f64::from(y)).abs() > HUGE {
@@ -37,7 +52,7 @@ pub(super) fn sum(x: f32, y: f32, result: f32) -> Option<bool> {
         let (x, y) = (f64::from(x), f64::from(y));
         let high = x + y;
         let b = high - x;
-        nearest_two(high, (x - (high - b)) + (y - b), result)
+        nearest(high, (x - (high - b)) + (y - b), result)
     }))
 }
 
@@ -47,7 +62,7 @@ pub(super) fn product(x: f32, y: f32, result: f32) -> Option<bool> {
         return None;
     }
     let mut all = flushed(x).flat_map(|x| flushed(y).map(move |y| [x, y]));
-    Some(all.any(|[x, y]| nearest_two(f64::from(x) * f64::from(y), 0.0, result)))
+    Some(all.any(|[x, y]| nearest(f64::from(x) * f64::from(y), 0.0, result)))
 }
 
 /// x / y, to 2.5 units of the last place, for divisors from 2⁻¹²⁶ to 2¹²⁶.
@@ -67,11 +82,11 @@ pub(super) fn inverse_root(x: f32, result: f32) -> Option<bool> {
         .then(|| within(1.0 / f64::from(x.abs()).sqrt(), result, 2.0))
 }
 
-/// √|x|: 1 over an inverse root of 2 units, divided with 2.5 units; all in all 4.6 u relative, u = 2⁻²³.
+/// √|x|: 1 over an inverse root of 2 units, divided with 2.5 units; all in all 9.2 u relative, u = 2⁻²⁴.
 pub(super) fn root(x: f32, result: f32) -> Option<bool> {
     let exact = f64::from(x.abs()).sqrt();
     x.is_normal()
-        .then(|| (f64::from(result) - exact).abs() <= 4.6 * f64::from(f32::EPSILON) * exact)
+        .then(|| (f64::from(result) - exact).abs() <= 9.2 * U * exact)
 }
 
 /// Whether `result` is within so many units of the last place of `exact`; 0 may stand for what is subnormal.
@@ -102,8 +117,7 @@ pub(super) fn dot(a: [f32; 3], b: [f32; 3], result: f32) -> Option<bool> {
     if sizes > HUGE || terms.iter().any(small) {
         return None;
     }
-    let u = f64::from(f32::EPSILON);
-    Some((f64::from(result) - terms.iter().sum::<f64>()).abs() <= 3.0 * u * (1.0 + u) * sizes)
+    Some((f64::from(result) - terms.iter().sum::<f64>()).abs() <= 3.0 * U * (1.0 + U) * sizes)
 }
 
 /// x + y = sum + tail, where no part of them is subnormal or overflows.

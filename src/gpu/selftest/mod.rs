@@ -68,6 +68,9 @@ pub fn failures(outcomes: &[Outcome]) -> Option<String> {
 pub fn version() -> u64 {
     use std::hash::{DefaultHasher, Hash as _, Hasher as _};
     let mut hasher = DefaultHasher::new();
+    for check in CHECKS {
+        (check.name, check.asked).hash(&mut hasher);
+    }
     (
         SHADER,
         env!("CARGO_PKG_VERSION"),

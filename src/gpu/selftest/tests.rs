@@ -182,11 +182,33 @@ fn a_last_place_is_noticed() {
             "{places}"
         );
     }
-    // 1 + 2⁻²⁴ lies between two f32, both of which may stand; 1 + 1 is one.
+    // 1 + 2⁻²⁴ lies midway between two f32, both of which may stand; next to that only one may; and 1 + 1 is one.
     let half = f32::EPSILON / 2.0;
-    for (places, passes) in [(0, true), (1, true), (2, false)] {
-        let word = 1_f32.to_bits() + places;
-        assert_eq!(judged("x + y", at(1.0, half), &[word]), Some(passes));
+    for (y, passes) in [
+        (half, [true, true, false]),
+        (half.next_down(), [true, false, false]),
+        (half.next_up(), [false, true, false]),
+    ] {
+        for (places, passes) in (0..).zip(passes) {
+            let word = 1_f32.to_bits() + places;
+            assert_eq!(judged("x + y", at(1.0, y), &[word]), Some(passes));
+        }
+    }
+    // (1 + 2⁻²³)² = 1 + 2⁻²² + 2⁻⁴⁶ is rounded down; below a power of two places are half as large.
+    let x = 1_f32.next_up();
+    for (result, passes) in [
+        (x.next_up(), true),
+        (x.next_up().next_up(), false),
+        (x, false),
+    ] {
+        assert_eq!(judged("x * y", at(x, x), &[result.to_bits()]), Some(passes));
+    }
+    let below = 1_f32.next_down();
+    for (result, passes) in [(below.next_down(), true), (below, false)] {
+        assert_eq!(
+            judged("x * y", at(below, below), &[result.to_bits()]),
+            Some(passes)
+        );
     }
     assert_eq!(
         judged("x + y", at(1.0, 1.0), &[2_f32.to_bits()]),

@@ -42,7 +42,7 @@ fn what_follows_the_first_order_is_within_the_bound() {
         ),
     ];
     for (roundings, bound, terms) in bounds {
-        // A faithful result r of a exact one is off by ROUNDING·|r|: by a factor of 1/(1 − ROUNDING) at most.
+        // A result r is off from the exact one by ROUNDING·|r| at most: by a factor of 1/(1 − ROUNDING).
         let off = (1.0 - ROUNDING).powf(-roundings) - 1.0;
         let left = f64::from(bound) * (1.0 - ROUNDING).powf(roundings);
         assert!(terms * off < left, "{roundings}");
@@ -50,7 +50,7 @@ fn what_follows_the_first_order_is_within_the_bound() {
     }
 }
 
-/// The f32 next below: as little as a faithful result may be.
+/// The f32 next below: less than a result may be.
 fn down(value: f64) -> f64 {
     let near = value as f32;
     f64::from(if f64::from(near) < value {
@@ -75,7 +75,7 @@ fn weight_over_bound(factors: u32, counted: f64, growth: f64) -> f64 {
 
 #[test]
 fn the_bound_of_a_weight_holds_after_any_number_of_mirrors_and_panes() {
-    for counted in [1.5, 3.0] {
+    for counted in [2.0, 4.0] {
         for factors in [1, 100, 10_000, 50_000] {
             let worst = weight_over_bound(factors, counted, WEIGHT_GROWTH);
             assert!((0.95..1.0).contains(&worst), "{factors}: {worst}");

@@ -199,7 +199,7 @@ pub(super) fn bits(lights_on_surface: &[usize]) -> u32 {
 fn low_light(plane: &prepare::WorldPlane<Bounded>) -> Option<(u32, f32)> {
     let (light, height) = plane.low_light?;
     let size = height.value.abs();
-    // The rounding to f32 is u/2; a light in the plane has no height to be known.
+    // The rounding to f32 is u; a light in the plane has no height to be known.
     let known = size > 1.0 / LARGEST && height.error < 0.25 * U * size;
     known.then_some((1 << light, height.value as f32))
 }

@@ -61,7 +61,7 @@ fn offsets_of_the_course_are_within_the_bounds_of_rays() {
     }
     assert!(worst_w <= f64::from(w_error), "{worst_w:e} > {w_error:e}");
     // What is computed with W afterwards has the bound that it has without samples.
-    let rounded = (DIR_ROUNDINGS - 1.5) * U;
+    let rounded = (DIR_ROUNDINGS - 3.0) * U;
     let bound = DIR_ROUNDINGS * f64::from(condition) * U - rounded;
     assert!(worst_dir <= bound, "{worst_dir:e} > {bound:e}");
 }

@@ -13,21 +13,14 @@ use super::{branches, surfaces};
 /// Operands for each fault.
 const COUNT: usize = 1 << 16;
 
-/// The shader with every constant at what it has to be at least on a driver that rounds to nearest: half as many
-/// roundings as the model allows. What bounds' own roundings take stays.
+/// The shader with every constant at what it has to be at least. What bounds' own roundings take stays.
 pub(crate) fn at_least(wgsl: &str) -> String {
     let own = ["GROWTH", "U"];
     let others = NAMED
         .iter()
         .filter(|constant| !own.contains(&constant.name));
     others.fold(wgsl.to_owned(), |wgsl, constant| {
-        let counts = constant.name.ends_with("ROUNDINGS");
-        let least = if counts {
-            0.5 * constant.least
-        } else {
-            constant.least
-        };
-        with_constant(&wgsl, constant.name, &format!("{least:e}f"))
+        with_constant(&wgsl, constant.name, &format!("{:e}f", constant.least))
     })
 }
 
