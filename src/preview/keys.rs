@@ -178,20 +178,13 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ("Ctrl+Q", "close"),
 ];
 
-/// The commands of the keys that were pressed, unless a field of text has them: those before anything that the mouse
-/// did in this frame, and those after. Those that concern the window as a whole it has not: see [`leaves_field`].
-pub(super) fn pressed(context: &Context) -> (Vec<Command>, Vec<Command>) {
+/// The commands of the keys that were pressed, unless a field of text has them. Those that concern the window as a whole
+/// it has not: see [`leaves_field`].
+pub(super) fn pressed(context: &Context) -> Vec<Command> {
     if context.egui_wants_keyboard_input() {
-        return Default::default();
+        return Vec::new();
     }
-    context.input(|input| {
-        let is_mouse =
-            |event: &Event| matches!(event, Event::PointerMoved(_) | Event::PointerButton { .. });
-        let first = input.events.iter().position(is_mouse);
-        let (early, late) = input.events.split_at(first.unwrap_or(input.events.len()));
-        let asked = |events: &[Event]| events.iter().filter_map(asked).collect();
-        (asked(early), asked(late))
-    })
+    commands(context)
 }
 
 /// The commands for the window as a whole where a field of text has the keys. The field is left, so that what was typed
@@ -200,8 +193,7 @@ pub(super) fn leaves_field(context: &Context) -> Vec<Command> {
     let Some(field) = context.memory(|memory| memory.focused()) else {
         return Vec::new();
     };
-    let mut commands: Vec<_> =
-        context.input(|input| input.events.iter().filter_map(asked).collect());
+    let mut commands = commands(context);
     commands.retain(|command| matches!(command, Command::SaveChanges | Command::Quit));
     if !commands.is_empty() {
         context.memory_mut(|memory| memory.surrender_focus(field));
@@ -210,20 +202,22 @@ pub(super) fn leaves_field(context: &Context) -> Vec<Command> {
     commands
 }
 
-/// What an event asks for.
-fn asked(event: &Event) -> Option<Command> {
-    match event {
-        // Each key event carries the modifiers of its own moment, as several events may come between two frames.
-        Event::Key {
-            key,
-            pressed: true,
-            modifiers,
-            ..
-        } => command(*key, *modifiers),
-        // egui makes an event of its own of Ctrl+C.
-        Event::Copy => Some(Command::CopyCamera),
-        _ => None,
-    }
+fn commands(context: &Context) -> Vec<Command> {
+    context.input(|input| {
+        let asked = |event: &Event| match event {
+            // Each key event carries the modifiers of its own moment, as several events may come between two frames.
+            Event::Key {
+                key,
+                pressed: true,
+                modifiers,
+                ..
+            } => command(*key, *modifiers),
+            // egui makes an event of its own of Ctrl+C.
+            Event::Copy => Some(Command::CopyCamera),
+            _ => None,
+        };
+        input.events.iter().filter_map(asked).collect()
+    })
 }
 
 /// What a key asks for with these modifiers.
@@ -246,31 +240,9 @@ mod tests {
 
     fn listening() -> Harness<'static, Vec<Command>> {
         Harness::new_ui_state(
-            |ui, commands: &mut Vec<Command>| commands.extend(pressed(ui.ctx()).0),
+            |ui, commands: &mut Vec<Command>| commands.extend(pressed(ui.ctx())),
             Vec::new(),
         )
-    }
-
-    #[test]
-    fn a_key_after_a_step_of_the_mouse_counts_after_it() {
-        let key = |key| Event::Key {
-            key,
-            physical_key: None,
-            pressed: true,
-            repeat: false,
-            modifiers: Modifiers::NONE,
-        };
-        let input = eframe::egui::RawInput {
-            events: vec![
-                key(Key::F),
-                Event::PointerMoved([3.0, 3.0].into()),
-                key(Key::R),
-            ],
-            ..Default::default()
-        };
-        let mut taken = Default::default();
-        let _ = Context::default().run_ui(input, |ui| taken = pressed(ui.ctx()));
-        assert_eq!(taken, (vec![Command::Fit], vec![Command::Reset]));
     }
 
     #[test]
@@ -328,7 +300,7 @@ mod tests {
                 let label = ui.label("text");
                 let field = ui.text_edit_singleline(text).labelled_by(label.id);
                 field.request_focus();
-                commands.extend(pressed(ui.ctx()).0);
+                commands.extend(pressed(ui.ctx()));
             },
             (String::new(), Vec::new()),
         );

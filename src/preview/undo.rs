@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use super::entities::title;
+use super::session::title;
 use crate::edit::{Changes, Target};
 use crate::scene::Scene;
 

@@ -1,16 +1,16 @@
-//! Watching a scene: its file, and those of its textures. From what [`watch`](super::watch) finds to news for the
-//! [`session`](super::session), read and parsed.
+//! Watching a scene: its file, and those of its textures.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::session::News;
-use super::watch::{News as Found, TextureWatch, Watcher, read, textures};
+use super::textures::{TextureWatch, textures};
+use super::{News as Found, Watcher, read};
+use crate::preview::session::News;
 
 /// Tells of the scene until it is dropped.
 #[derive(Debug)]
-pub(super) struct SceneWatch {
+pub(in crate::preview) struct SceneWatch {
     _file: Watcher,
     _textures: TextureWatch,
 }
@@ -34,7 +34,10 @@ impl SceneWatch {
     ///
     /// # Errors
     /// When there can be no threads.
-    pub(super) fn new(path: &Path, tell: impl FnMut(News) + Send + 'static) -> io::Result<Self> {
+    pub(in crate::preview) fn new(
+        path: &Path,
+        tell: impl FnMut(News) + Send + 'static,
+    ) -> io::Result<Self> {
         let teller = Arc::new(Teller {
             path: path.to_owned(),
             tell: Mutex::new(tell),
