@@ -15,9 +15,10 @@ use super::ways::Way;
 use crate::certify::DecidedBy;
 use crate::cpu::camera::camera_setpix;
 use crate::cpu::trace::{Unobserved, ray_trace};
+use crate::gpu::GpuError;
+use crate::gpu::bands::{self, Rendered};
 use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::Pipeline;
-use crate::gpu::{GpuError, bands};
 use crate::image::Picture;
 use crate::jitter::Jitter;
 use crate::prepare::Prepared;
@@ -225,9 +226,13 @@ impl Subject<'_> {
             band_rows: None,
         };
         let run = || -> Result<f64, Unmeasured> {
-            let hand_on = &mut |_| ControlFlow::Continue(());
+            let mut kernel = 0.0;
+            let hand_on = &mut |rendered: Rendered| {
+                kernel += rendered.kernel;
+                ControlFlow::Continue(())
+            };
             let watch = &mut Stopwatch::start();
-            Ok(bands::run(
+            bands::run(
                 gpu,
                 &pipeline,
                 &frame,
@@ -235,7 +240,8 @@ impl Subject<'_> {
                 &|| false,
                 watch,
                 hand_on,
-            )?)
+            )?;
+            Ok(kernel)
         };
         self.times(run()?, run)
     }

@@ -9,8 +9,7 @@ const FEW: usize = 4096;
 
 /// The greatest f64 that a number may be: how far hits matter.
 pub fn at_most<R: Real>(number: R) -> f64 {
-    let Bounded { value, error } = number.enclosure();
-    let most = (value + error * Bounded::GROW) * SLACK;
+    let most = number.enclosure().most() * SLACK;
     if most.is_nan() { f64::INFINITY } else { most }
 }
 

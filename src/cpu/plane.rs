@@ -28,8 +28,7 @@ pub fn plane_hits<R: Real>(
     if !inverse.positive()? {
         return Ok(None);
     }
-    let Bounded { value, error } = inverse.quick_enclosure();
-    if value + error * Bounded::GROW < least {
+    if inverse.quick_enclosure().most() < least {
         return Ok(None);
     }
     match &plane.sides {

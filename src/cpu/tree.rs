@@ -141,8 +141,7 @@ impl<'a, R: Real> Tree<'a, R> {
     fn full(&self) -> [bool; 3] {
         let (color, enough) = (self.color, self.limits.enough);
         [color.x, color.y, color.z].map(|c| {
-            let Bounded { value, error } = c.quick_enclosure();
-            enough.is_finite() && value - error * Bounded::GROW >= enough * (1.0 + f64::EPSILON)
+            enough.is_finite() && c.quick_enclosure().least() >= enough * (1.0 + f64::EPSILON)
         })
     }
 
@@ -171,8 +170,7 @@ impl<'a, R: Real> Tree<'a, R> {
     fn most(&self, last: Option<u32>, weight: V3<R>, counts: [bool; 3], total: R) -> [f64; 3] {
         let brightest = self.world.brightest.leaving(last, self.limits.max_rays);
         // After some mirrors the first enclosure may be too wide to say anything, and no ray would be faint.
-        let least = total.enclosure();
-        let least = (least.value - least.error * Bounded::GROW) * two_to(self.scene.camera.scale);
+        let least = total.enclosure().least() * two_to(self.scene.camera.scale);
         let weight = [weight.x, weight.y, weight.z].map(|w| {
             let Bounded { value, error } = w.quick_enclosure();
             value.abs() + error * Bounded::GROW

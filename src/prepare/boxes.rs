@@ -11,7 +11,7 @@ use super::triangle;
 use super::world_plane::WorldPlane;
 use super::world_sphere::WorldSphere;
 use crate::real::rational::two_to;
-use crate::real::{Bounded, Real, V3};
+use crate::real::{Real, V3};
 use crate::scene::{Scene, Shape};
 
 /// A box, from the viewpoint in units of 2^scale.
@@ -48,10 +48,9 @@ impl Bounds {
         };
         for corner in corners {
             for axis in 0..3 {
-                let Bounded { value, error } = corner.axis(axis).quick_enclosure();
-                bounds.min[axis] =
-                    bounds.min[axis].min((value - error * Bounded::GROW).next_down());
-                bounds.max[axis] = bounds.max[axis].max((value + error * Bounded::GROW).next_up());
+                let at = corner.axis(axis).quick_enclosure();
+                bounds.min[axis] = bounds.min[axis].min(at.least().next_down());
+                bounds.max[axis] = bounds.max[axis].max(at.most().next_up());
             }
         }
         bounds.is_finite().then_some(bounds)
@@ -145,13 +144,11 @@ fn around_quadric<R: Real>(quadric: &Quadric<R>) -> Option<Bounds> {
     });
     for (axis, [least, greatest]) in quadric.borders.iter().enumerate() {
         if let Some(least) = least {
-            let Bounded { value, error } = least.quick_enclosure();
-            let least = (value - error * Bounded::GROW).next_down();
+            let least = least.quick_enclosure().least().next_down();
             bounds.min[axis] = bounds.min[axis].max(least);
         }
         if let Some(greatest) = greatest {
-            let Bounded { value, error } = greatest.quick_enclosure();
-            let greatest = (value + error * Bounded::GROW).next_up();
+            let greatest = greatest.quick_enclosure().most().next_up();
             bounds.max[axis] = bounds.max[axis].min(greatest);
         }
     }

@@ -33,6 +33,16 @@ impl Bounded {
     /// What the roundings of the bound itself may add up to: where a bound is used, it is multiplied by this.
     pub const GROW: f64 = 1.0 + 1e-8;
 
+    /// The least that the number may be, but for the rounding of this.
+    pub fn least(self) -> f64 {
+        self.value - self.error * Self::GROW
+    }
+
+    /// The most that it may be, likewise.
+    pub fn most(self) -> f64 {
+        self.value + self.error * Self::GROW
+    }
+
     /// Nothing is known.
     const UNKNOWN: Self = Self {
         value: 0.0,
@@ -234,7 +244,7 @@ impl Real for Bounded {
 
     fn pow(self, exponent: f64) -> Self {
         // A root of what may be negative would be a guess.
-        if self.value - self.error * Self::GROW <= 0.0 {
+        if self.least() <= 0.0 {
             return Self::UNKNOWN;
         }
         let whole = exponent.trunc();

@@ -155,7 +155,7 @@ fn render(
     );
     #[cfg(test)]
     super::tests::fail(&fault, device.gpu, line)?;
-    ended.map(|_| ())
+    ended
 }
 
 /// The shader for the packed scene, compiled and bound to it.

@@ -173,13 +173,10 @@ pub fn render_with(
     devices: &Devices,
     emit: &mut Emit<'_>,
 ) -> Result<Report, Error> {
-    // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
-    start_threads(settings)?;
-    let source = Source::Devices(devices);
-    run(scene, settings, source, None, None, &|| false, emit)
+    render_prepared(scene, settings, devices, None, emit)
 }
 
-/// The same of a scene that is prepared already, for the view that the settings ask for.
+/// The same of a scene that may be prepared already, for the view that the settings ask for.
 ///
 /// # Errors
 /// As [`render`].
@@ -187,20 +184,13 @@ pub fn render_prepared<'a>(
     scene: &'a Scene,
     settings: &Settings,
     devices: &Devices,
-    prepared: ExactTracer<'a>,
+    prepared: Option<ExactTracer<'a>>,
     emit: &mut Emit<'_>,
 ) -> Result<Report, Error> {
+    // Before a driver takes the memory: without a GPU there is a picture, without threads there is none.
     start_threads(settings)?;
     let source = Source::Devices(devices);
-    run(
-        scene,
-        settings,
-        source,
-        Some(prepared),
-        None,
-        &|| false,
-        emit,
-    )
+    run(scene, settings, source, prepared, None, &|| false, emit)
 }
 
 /// The same as one of many pictures: prepares the scene, waits for the turn, and passes it on when all rows are made,

@@ -97,9 +97,9 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// How long the CPU would take for the whole picture, by a few pixels from all over it that all threads try at
-    /// once: what two of them do is not twice what one does where they share a core.
-    pub(super) fn seems_to_take(&self) -> Duration {
+    /// How many pixels a second the CPU makes, by a few from all over the picture that all threads try at once: what two
+    /// of them do is not twice what one does where they share a core. Infinite where a pixel cannot be made.
+    pub(super) fn tried_speed(&self) -> f64 {
         let lanes = self.lanes();
         let speeds = self.on_threads(|| {
             rayon::broadcast(|thread| {
@@ -107,9 +107,7 @@ impl<'a> Rendering<'a> {
                 self.try_pixels(thread.index() as u32, threads as u32, lanes)
             })
         });
-        let speed: f64 = speeds.into_iter().sum();
-        let pixels = self.width as f64 * self.rows.len() as f64;
-        Duration::try_from_secs_f64(pixels / speed).unwrap_or(Duration::MAX)
+        speeds.into_iter().sum()
     }
 
     /// Pixels a second of one of so many threads.

@@ -126,11 +126,11 @@ impl Rendering<'_> {
         if let (true, false, Source::Devices(devices)) = (late, asked, source)
             && !self.is_quick_on_cpu()
         {
-            let seems = self.seems_to_take();
-            if seems > STARTING {
-                let pixels = self.width as f64 * self.rows.len() as f64;
+            let speed = self.tried_speed();
+            let pixels = self.width as f64 * self.rows.len() as f64;
+            if pixels / speed > STARTING.as_secs_f64() {
                 self.ask_for_software(devices, &sender);
-                self.bag.rest(RESTING, pixels / seems.as_secs_f64());
+                self.bag.rest(RESTING, speed);
                 asked = true;
             }
         }

@@ -277,10 +277,8 @@ impl<'a> Picture<'a> {
             progress.add(band.rows.len() as u64);
             Ok(())
         };
-        let rendered = match self.prepared.take() {
-            Some(prepared) => render::render_prepared(scene, &settings, devices(), prepared, emit),
-            None => render::render_with(scene, &settings, devices(), emit),
-        };
+        let prepared = self.prepared.take();
+        let rendered = render::render_prepared(scene, &settings, devices(), prepared, emit);
         progress.clear();
         (rendered, splitter.made().to_vec())
     }

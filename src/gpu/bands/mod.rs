@@ -85,8 +85,7 @@ pub fn from_the_top(mut rows: Range<u32>) -> impl FnMut(u32, bool) -> Order {
 }
 
 /// Renders the rows that it is told, of those of the frame, and hands each band on: while that is waited for, the next
-/// two dispatches are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so. Returns the seconds
-/// that the kernels took.
+/// two dispatches are on the GPU already. Ends early where `hand_on` breaks off, or `stop` says so.
 pub fn run(
     gpu: &Gpu,
     pipeline: &Pipeline,
@@ -95,7 +94,7 @@ pub fn run(
     stop: &StopRequested<'_>,
     watch: &mut Stopwatch,
     hand_on: &mut dyn FnMut(Rendered) -> ControlFlow<()>,
-) -> Result<f64, GpuError> {
+) -> Result<(), GpuError> {
     let width = frame.width;
     let (largest, filled) = largest_dispatch(gpu, &pipeline.form, width, &frame.rows);
     // The second one is made when the GPU is busy with the first, and only if there is more to do.
@@ -108,12 +107,11 @@ pub fn run(
         frame.dispatch_seconds,
     );
     let mut assembly = Assembly::new(width, pipeline.form.pixels);
-    let mut kernels = 0.0;
     let mut turn = 0;
     let mut open = 0;
     loop {
         if stop() {
-            return Ok(kernels);
+            return Ok(());
         }
         let next = plan.next(&mut |wish| next_rows(wish, open == 0));
         watch.lap(Phase::Held);
@@ -130,7 +128,6 @@ pub fn run(
                 let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
                 plan.took(pixels, seconds);
                 assembly.took(seconds);
-                kernels += seconds;
             }
             open -= 1;
             finished = assembly.finished();
@@ -157,11 +154,11 @@ pub fn run(
             let taken = hand_on(band);
             watch.lap(Phase::Held);
             if taken.is_break() {
-                return Ok(kernels);
+                return Ok(());
             }
         }
         if done {
-            return Ok(kernels);
+            return Ok(());
         }
     }
 }

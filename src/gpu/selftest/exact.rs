@@ -3,6 +3,8 @@
 //! Each answers None outside its domain, else whether the result may stand. Subnormal operands may be taken for 0, and
 //! subnormal results too.
 
+use std::cmp::Ordering;
+
 /// 2³¹.
 pub(super) const TWO_31: f32 = 2_147_483_648.0;
 
@@ -19,27 +21,33 @@ fn flushed(v: f32) -> impl Iterator<Item = f32> + Clone {
         .flatten()
 }
 
-/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32; where |low| is at
-/// most half a last place of `high`. A subnormal sum may be 0.
-pub(super) fn nearest_two(high: f64, low: f64, result: f32) -> bool {
-    if result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE) {
-        return true;
-    }
-    let (below, above) = (f64::from(result.next_down()), f64::from(result.next_up()));
-    // `high` is `high + low` rounded, and rounding keeps the order.
-    (below < high || (below == high && low > 0.0)) && (high < above || (high == above && low < 0.0))
+/// How `high + low` compares with a border; where |low| is at most half a last place of `high`. (That is `high + low`
+/// rounded, and rounding keeps the order.) With what is no number nothing compares.
+fn beside(high: f64, low: f64, border: f64) -> Option<Ordering> {
+    Some(high.partial_cmp(&border)?.then(low.partial_cmp(&0.0)?))
 }
 
-/// Whether `result` is the f32 nearest to `high + low`, either one where two are as near; where |low| is at most half a
-/// last place of `high`. A subnormal sum may be 0.
+/// Whether a device may have flushed a result of this size to 0.
+fn may_be_flushed(high: f64, result: f32) -> bool {
+    result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE)
+}
+
+/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32. A subnormal sum may be
+/// 0.
+pub(super) fn nearest_two(high: f64, low: f64, result: f32) -> bool {
+    let (below, above) = (f64::from(result.next_down()), f64::from(result.next_up()));
+    may_be_flushed(high, result)
+        || beside(high, low, below).is_some_and(Ordering::is_gt)
+            && beside(high, low, above).is_some_and(Ordering::is_lt)
+}
+
+/// Whether `result` is the f32 nearest to `high + low`, either one where two are as near. A subnormal sum may be 0.
 pub(super) fn nearest(high: f64, low: f64, result: f32) -> bool {
-    if result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE) {
-        return true;
-    }
     let midway = |next: f32| 0.5 * (f64::from(next) + f64::from(result));
     let (least, most) = (midway(result.next_down()), midway(result.next_up()));
-    // `high` is `high + low` rounded, and rounding keeps the order.
-    (least < high || (least == high && low >= 0.0)) && (high < most || (high == most && low <= 0.0))
+    may_be_flushed(high, result)
+        || beside(high, low, least).is_some_and(Ordering::is_ge)
+            && beside(high, low, most).is_some_and(Ordering::is_le)
 }
 
 /// x + y.
