@@ -139,14 +139,18 @@ impl Gpu {
     }
 
     /// Compiles the shader `wgsl` from its entry point on, with the bindings that it uses.
+    ///
+    /// # Errors
+    /// Who asked for a shader that is refused hears of it; the device is as sound for everyone else as it was.
     pub fn compile(&self, wgsl: &str, entry: &str) -> Result<wgpu::ComputePipeline, GpuError> {
+        // wgpu's scopes belong to the thread that opened them.
+        let refusals = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let module = self
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("plumb"),
                 source: wgpu::ShaderSource::Wgsl(wgsl.into()),
             });
-        self.check()?;
         let pipeline = self
             .device
             .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -161,6 +165,12 @@ impl Gpu {
                 },
                 cache: None,
             });
+        if let Some(refusal) = pollster::block_on(refusals.pop()) {
+            return Err(GpuError::Refused {
+                adapter: self.name.clone(),
+                reason: refusal.to_string(),
+            });
+        }
         self.check()?;
         Ok(pipeline)
     }

@@ -7,6 +7,7 @@ mod operations;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use plumb::gpu::GpuError;
 use plumb::gpu::adapters;
 use plumb::gpu::device::Gpu;
 use plumb::prepare;
@@ -309,6 +310,21 @@ mod a_wrong_answer_is_noticed {
     #[should_panic(expected = "no_such_function")]
     fn when_the_shader_does_not_compile() {
         answers(&[], ["return no_such_function(a);"]);
+    }
+
+    /// The other tests compute on the same device meanwhile.
+    #[test]
+    fn by_the_one_whose_shader_does_not_compile_alone() {
+        let gpu = open(None);
+        let refused = gpu.compile(
+            "@compute @workgroup_size(1) fn main() { nothing(); }",
+            "main",
+        );
+        assert!(matches!(refused, Err(GpuError::Refused { .. })));
+        let missing = gpu.compile("@compute @workgroup_size(1) fn main() {}", "other");
+        assert!(matches!(missing, Err(GpuError::Refused { .. })));
+        gpu.check().unwrap();
+        assert!(Arc::ptr_eq(&gpu, &open(None)));
     }
 
     #[test]
