@@ -71,8 +71,8 @@ impl Work {
             let cost = |k| {
                 let mut rays = Rays { lights, count: 0 };
                 let x = middle(width, columns, k);
-                // The middle of a pixel may be special, such as where a floor begins at the screen's edge: all pixels of
-                // a row are undecided there, but few samples are. How samples are spread does not matter to this.
+                // The middle of a pixel may be special, such as where a floor begins at the screen's edge: there all
+                // middles of a row are undecided, and few samples are. How samples are spread does not matter to this.
                 let [a, b] = if settings.samples > 1 {
                     jitter::hash(x, y, 0)
                 } else {
