@@ -145,8 +145,9 @@ impl Script {
         // Where writing into a text fails there is no memory either.
         let _ = write!(
             text,
-            "#\n{OURS} ({SOFTWARE}): {what}. docs/CLUSTER.md tells more.\n#\n#   bash THIS            submits all of it\n#   \
-             bash THIS missing    when it has ended, submits what is {missing}, and nothing else\n\n"
+            "#\n{OURS} ({SOFTWARE}): {what}. docs/CLUSTER.md tells more.\n#\n\
+             #   bash THIS            submits all of it\n\
+             #   bash THIS missing    when it has ended, submits what is {missing}, and nothing else\n\n"
         );
         text
     }
