@@ -1,10 +1,11 @@
-// The trees over many spheres and over many triangles: which of them a ray may hit. Referee: src/cpu/bvh.rs.
+// The trees over many spheres and over many triangles: which of them a ray may hit. Twin of the boxes' tests on the CPU:
+// src/certify/lanes/lit/walk.rs. Referee: src/cpu/bvh.rs.
 
 //#insert struct BvhNode
 
 // The slack of a box's near and far side: the roundings of the test are relative, a few ulp.
-const BVH_NEAR = 0.999998;
-const BVH_FAR = 1.000004;
+const BVH_NEAR: f32 = 0.999998;
+const BVH_FAR: f32 = 1.000004;
 
 // Where the ray enters the box, in units of its direction, or a negative number where it does not. `inverse` is 1/dir
 // by components.

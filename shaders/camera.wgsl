@@ -1,7 +1,7 @@
-// From a pixel to its ray, from a colour to its bytes. Twin of `camera_setpix`, the same in f32 on the CPU:
-// src/certify/lanes/shade.rs. Referee: src/cpu/camera.rs.
+// From a pixel to its ray, from a colour to its bytes. Referee: src/cpu/camera.rs.
 //
-// In all files a line that ends in //~ is there only where pixels are certified: it carries an error bound or asks one.
+// `src/lower` writes the same in Rust, for the CPU's f32. In all files a line that ends in //~ is there only where pixels
+// are certified: it carries an error bound or asks one.
 // Bounds are derived in docs/NUMERICS.md; U and the constants named after what they bound come from the host.
 
 //#if any_object

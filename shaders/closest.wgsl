@@ -1,5 +1,5 @@
-// The closest hit of a primary ray. Twin, the same in f32 on the CPU: src/certify/lanes/mod.rs.
-// Referee: src/cpu/trace.rs.
+// The closest hit of a primary ray. Twin of its loop over objects on the CPU: src/certify/lanes/primary.rs. Referee:
+// src/cpu/trace.rs.
 
 // An object as a primary ray meets it.
 struct PrimaryIntersection {

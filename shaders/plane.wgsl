@@ -1,5 +1,4 @@
-// Planes, and rectangles and triangles of planes. Twin of what primary rays ask, the same in f32 on the CPU:
-// src/certify/lanes/mod.rs. Referee: src/cpu/plane.rs.
+// Planes, and rectangles and triangles of planes. Referee: src/cpu/plane.rs.
 //
 // What is called for each object has neither branches with two arms nor && and ||, which are such branches: a compiler
 // was seen to take twice as long for each of them that stands in a loop (docs/BENCH.md).

@@ -52,13 +52,11 @@ fn locate(ray: Ray, hit: Hit) -> Point {
         on_sphere(&point, sphere_normal(hit.index, ray, hit));
     }
 //#end
-//#if bvh
-//#if lit_sphere
+//#if sphere_tree
     if (objects[hit.object].place & SPHERE_BIT) != 0u {
         on_sphere(&point,
             sphere_normal_from(world_spheres[objects[hit.object].place & ~SPHERE_BIT], as_secondary_ray(ray)));
     }
-//#end
 //#end
 //#else
 //#if sphere_point

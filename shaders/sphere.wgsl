@@ -1,4 +1,4 @@
-// Spheres. Twin of `sphere_hits`, the same in f32 on the CPU: src/certify/lanes/mod.rs. Referee: src/cpu/sphere.rs.
+// Spheres. Referee: src/cpu/sphere.rs.
 //#if certified
 
 // What an error in `square`, which is at least that error, is to its root.

@@ -1,5 +1,4 @@
-// The reflectivity of an object at a hit. Twin of `tplane_foreground`, the same in f32 on the CPU:
-// src/certify/lanes/shade.rs. Referee: src/cpu/surface.rs.
+// The reflectivity of an object at a hit. Referee: src/cpu/surface.rs.
 
 //#if lit
 //#insert struct LitObject

@@ -1,5 +1,4 @@
-// What the lights make of a hit, and the colour that a ray brings. Twin of `ray_trace` without lights, the same in f32
-// on the CPU: src/certify/lanes/shade.rs. Referee: src/cpu/trace.rs.
+// What the lights make of a hit, and the colour that a ray brings. Referee: src/cpu/trace.rs.
 
 //#if counted
 // Iterations of the loops so far, of all samples, the last one of each, which only finds the end, included: the driver

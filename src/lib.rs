@@ -29,6 +29,8 @@ pub mod frame;
 pub mod gpu;
 pub mod image;
 pub mod jitter;
+#[cfg(test)]
+mod lower;
 pub mod parts;
 mod ppm;
 pub mod prepare;

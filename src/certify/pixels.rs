@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::first_halt::FirstHalt;
 use super::{Decided, DecidedBy, Tally};
-use crate::certify::lanes::{LANES, Lanes};
+use crate::certify::lanes::{LANES, Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
 use crate::cpu::trace::Limits;
 use crate::frame::{Band, Halt, StopRequested, spare};
@@ -173,7 +173,7 @@ impl<'a> PixelDecider<'a> {
         Ok((all, tally))
     }
 
-    /// Traces a whole band; with `lanes`, eight pixels at once as far as those are sure. Gives up where `unwanted` says
+    /// Traces a whole band; with `lanes`, many pixels at once as far as those are sure. Gives up where `unwanted` says
     /// that nobody wants this band any more.
     pub fn band(
         &self,
@@ -237,7 +237,7 @@ impl<'a> PixelDecider<'a> {
         Ok((band, tally))
     }
 
-    /// Decides up to eight pixels of row `y` from column `x` on, as a band does, and forgets them: to see how long that
+    /// Decides up to `LANES` pixels of row `y` from column `x` on, as a band does, and forgets them: to see how long that
     /// takes.
     pub fn try_pixels(&self, [x, y]: [u32; 2], lanes: Option<&Lanes>) -> Result<Tally, Halt> {
         let mut bytes = [0; 3 * LANES];
@@ -270,40 +270,34 @@ impl<'a> PixelDecider<'a> {
         } = strip;
         let exact_tracer = self.exact_tracer();
         let mut tally = Tally::default();
-        for (chunk, bytes) in bytes.chunks_mut(3 * LANES).enumerate() {
-            let start = chunk * LANES;
-            let eight = lanes.map(|lanes| lanes.row((first + start) as u32, y));
-            let eight = eight.unwrap_or_default();
-            // Bytes of pixels that are not sure are copied too; those pixels are decided below.
-            bytes.copy_from_slice(&eight.bytes.as_flattened()[..bytes.len()]);
-            let sure = &eight.sure[..bytes.len() / 3];
-            let quick = sure.iter().filter(|sure| **sure).count();
-            tally.add(DecidedBy::Single, quick as u64);
-            if quick == LANES {
-                if let Some(verdicts) = verdicts.get_mut(start..start + sure.len()) {
-                    verdicts.fill(DecidedBy::Single);
+        let mut quick = 0;
+        // What the lanes are sure of, and which pixels they leave open.
+        let mut words = vec![OPEN; bytes.len() / 3];
+        if let Some(lanes) = lanes {
+            lanes.strip(first as u32, y, &mut words);
+        }
+        for (i, (pixel, word)) in bytes.chunks_exact_mut(3).zip(words).enumerate() {
+            let x = first + i;
+            let mut by = DecidedBy::Single;
+            if word < OPEN {
+                let [red, green, blue, _] = word.to_le_bytes();
+                pixel.copy_from_slice(&[red, green, blue]);
+                quick += 1;
+            } else {
+                let sampling = self.jitter.pixel(offsets, self.width, x);
+                let decided = exact_tracer.trace(&self.limits, sampling, x as u32, y)?;
+                by = decided.by;
+                tally.decided(by, [x as u32, y], sampling.samples(), Duration::ZERO);
+                pixel.copy_from_slice(&decided.bytes);
+                if let Some(value) = values.get_mut(i) {
+                    *value = decided.value;
                 }
-                continue;
             }
-            for (lane, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                let (i, x) = (start + lane, first + start + lane);
-                let mut by = DecidedBy::Single;
-                if !sure[lane] {
-                    let sampling = self.jitter.pixel(offsets, self.width, x);
-                    let decided = exact_tracer.trace(&self.limits, sampling, x as u32, y)?;
-                    by = decided.by;
-                    let at = [x as u32, y];
-                    tally.decided(by, at, sampling.samples(), Duration::ZERO);
-                    pixel.copy_from_slice(&decided.bytes);
-                    if let Some(value) = values.get_mut(i) {
-                        *value = decided.value;
-                    }
-                }
-                if let Some(verdict) = verdicts.get_mut(i) {
-                    *verdict = by;
-                }
+            if let Some(verdict) = verdicts.get_mut(i) {
+                *verdict = by;
             }
         }
+        tally.add(DecidedBy::Single, quick);
         Ok(tally)
     }
 }

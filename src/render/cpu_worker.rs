@@ -1,4 +1,4 @@
-//! The CPU as a worker: whole bands on all cores, eight pixels at once as far as that is sure, the others one by one.
+//! The CPU as a worker: whole bands on all cores, many pixels at once as far as that is sure, the others one by one.
 
 use std::time::Instant;
 

@@ -154,19 +154,16 @@ impl<'a> Rendering<'a> {
         Arc::clone(self.packed.get_or_init(pack))
     }
 
-    /// What the CPU does eight pixels at once, if it does.
+    /// What the CPU does as many pixels at once as its vectors hold, if it does.
     pub(super) fn lanes(&self) -> Option<&Lanes> {
-        let new = || {
-            let prepared = self.decider.exact_tracer().bounded();
-            Lanes::new(prepared, self.settings, || self.packed())
-        };
+        let new = || Lanes::new(self.settings, || self.packed());
         self.lanes.get_or_init(|| self.on_threads(new)).as_ref()
     }
 
-    /// Whether the CPU makes the whole scene eight pixels at once. Software uses the same cores, and was never seen to be
-    /// quicker then (docs/BENCH.md).
+    /// Whether the CPU makes the scene as many pixels at once as its vectors hold. Software uses the same cores, and was
+    /// never seen to be quicker then (docs/BENCH.md).
     pub(super) fn is_quick_on_cpu(&self) -> bool {
-        self.lanes().is_some_and(Lanes::are_whole)
+        self.lanes().is_some()
     }
 
     pub(super) fn tell(&self, how: impl FnOnce(&mut Told)) {

@@ -81,13 +81,22 @@ const FILES: [File; 16] = [
 /// # Panics
 /// If a file of `shaders/` has a directive that means nothing: a test goes through all of them.
 pub fn compose(packed: &Packed, set: &FeatureSet, entry: Entry) -> String {
-    let features = set.features();
-    let insert = |what: &str| insertion(what, packed, set, &features);
+    compose_with(packed, set, &set.features(), entry)
+}
+
+/// The same with just these features.
+pub(crate) fn compose_with(
+    packed: &Packed,
+    set: &FeatureSet,
+    features: &Features,
+    entry: Entry,
+) -> String {
+    let insert = |what: &str| insertion(what, packed, set, features);
     let mut text = String::new();
-    let needed = FILES.iter().filter(|(_, needed)| needed(&features));
+    let needed = FILES.iter().filter(|(_, needed)| needed(features));
     for file in needed.map(|(file, _)| *file).chain([entry.file()]) {
         text.push('\n');
-        resolve(file, &features, &insert, &mut text);
+        resolve(file, features, &insert, &mut text);
     }
     if features.contains(&Feature::Moving) {
         // Constants of the text are fields of `Dispatch` while the camera moves.
@@ -96,7 +105,7 @@ pub fn compose(packed: &Packed, set: &FeatureSet, entry: Entry) -> String {
             text = text.replace(&constant, &format!("dispatch.camera_{}", field.name));
         }
     }
-    constants(packed, set, &features) + &text
+    constants(packed, set, features) + &text
 }
 
 fn resolve(

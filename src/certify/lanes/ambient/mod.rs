@@ -1,0 +1,16 @@
+//! Scenes without lights.
+
+pub(super) mod by_hand;
+#[allow(
+    clippy::duplicate_mod,
+    reason = "it is about the types of the text beside it"
+)]
+#[path = "../primary.rs"]
+pub(super) mod primary;
+#[allow(
+    clippy::all,
+    unused,
+    unused_comparisons,
+    reason = "it is written by a program"
+)]
+pub(super) mod text;

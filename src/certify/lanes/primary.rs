@@ -1,0 +1,152 @@
+//! The closest hits of primary rays: the loops over objects, and a row of pixels.
+
+use fearless_simd::{Simd, prelude::*};
+
+use super::text::{
+    Hit, PrimaryIntersection, Ray, State, camera_getdir, camera_setpix, from_pixel, nearer,
+    plane_hits, polygon_hits, quadric_hits, ray_trace, sphere_disc, sphere_hits,
+};
+use crate::certify::lanes::scene::Scene;
+use crate::certify::lanes::vector::{I, Lanewise as _, M, Vec2};
+use crate::shader::records::Sphere;
+
+/// The words of pixels side by side, from column `first` of row `y` on: bytes, and a verdict.
+pub(in crate::certify::lanes) fn strip<S: Simd>(
+    scene: &Scene<'_, S>,
+    first: u32,
+    y: u32,
+    words: &mut [u32],
+) {
+    scene.simd.vectorize(
+        #[inline(always)]
+        || words_of(scene, first, y, words),
+    );
+}
+
+#[inline(always)]
+fn words_of<S: Simd>(scene: &Scene<'_, S>, first: u32, y: u32, words: &mut [u32]) {
+    let width = S::f32s::LEN;
+    let place = I::from_fn(scene.simd, |lane| lane as i32);
+    let mut state = State::new(scene.simd);
+    for (k, words) in words.chunks_mut(width).enumerate() {
+        let column = first as i32 + (k * width) as i32;
+        let on = place.lt(scene.i32(words.len() as i32));
+        let ray = camera_getdir(scene, Vec2::new(place + column, scene.i32(y as i32)));
+        let traced = ray_trace(scene, &mut state, on, ray);
+        let word = camera_setpix(scene, traced.color, traced.error) | traced.verdict;
+        words.copy_from_slice(&word.as_slice()[..words.len()]);
+    }
+}
+
+/// The closest object that each ray hits.
+#[inline(always)]
+pub(super) fn find_closest_object<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>) -> Hit<S> {
+    let mut closest = Hit::zero(scene.simd);
+    let loose = scene.packed.loose_polygons();
+    for polygon in &scene.polygons[..loose] {
+        let hits = polygon_hits(scene, polygon, ray);
+        takes(
+            scene,
+            &mut closest,
+            hits,
+            [polygon.object, 0, polygon.group],
+        );
+    }
+    for plane in scene.planes {
+        let hits = plane_hits(scene, plane, ray);
+        takes(scene, &mut closest, hits, [plane.object, 0, plane.group]);
+    }
+    for quadric in scene.quadrics {
+        let hits = quadric_hits(scene, scene.mask(true), quadric, ray);
+        takes(scene, &mut closest, hits, [quadric.object, 0, 0]);
+    }
+    match &scene.packed.screen_grid {
+        None => {
+            for (i, sphere) in (0..).zip(scene.spheres) {
+                if let Some(hits) = sphere_if_near(scene, sphere, ray) {
+                    takes(scene, &mut closest, hits, [sphere.object, i, 0]);
+                }
+            }
+        }
+        Some(_) => in_cells(scene, ray, &mut closest),
+    }
+    closest
+}
+
+/// Takes what is met of an object if it is nearer: with the object's number, that among its kind, and its surface's.
+#[inline(always)]
+fn takes<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    closest: &mut Hit<S>,
+    hits: PrimaryIntersection<S>,
+    numbers: [u32; 3],
+) {
+    let [object, index, group] = numbers.map(|number| scene.u32(number));
+    nearer(scene, closest, hits, object, index, group);
+}
+
+/// What the rays meet of a sphere, unless all miss it.
+#[inline(always)]
+fn sphere_if_near<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    sphere: &Sphere,
+    ray: Ray<S>,
+) -> Option<PrimaryIntersection<S>> {
+    let at = from_pixel(scene, ray, scene.vec2_i32(sphere.anchor));
+    let disc = sphere_disc(scene, scene.same(sphere), at);
+    if disc.gt(scene.f32(-sphere.disc_error)).any() {
+        Some(sphere_hits(scene, sphere, ray))
+    } else {
+        None
+    }
+}
+
+/// The objects in the cells of the screen that the lanes' pixels lie in, one cell after the other: in each the nearest
+/// first, until what is left must lie behind what its rays have hit.
+#[inline(always)]
+fn in_cells<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>, closest: &mut Hit<S>) {
+    let Some(grid) = &scene.packed.screen_grid else {
+        return;
+    };
+    let columns = ray.pixel.x.as_slice();
+    let (first, last) = (columns[0] as u32, columns[columns.len() - 1] as u32);
+    let row = ray.pixel.y.as_slice()[0] as u32;
+    let side = grid.sides[0];
+    let mut column = first;
+    while column <= last {
+        let end = (column / side + 1) * side;
+        let inside =
+            ray.pixel.x.ge(scene.i32(column as i32)) & ray.pixel.x.lt(scene.i32(end as i32));
+        for &place in grid.at([f64::from(column), f64::from(row)]) {
+            let place = place as usize;
+            let behind = (closest.inverse - closest.error).gt(scene.f32(grid.max_inverse[place]));
+            if !(inside & !behind).any() {
+                break;
+            }
+            match scene.spheres.get(place) {
+                Some(sphere) => {
+                    if let Some(hits) = sphere_if_near(scene, sphere, ray) {
+                        let numbers = [sphere.object, place as u32, 0];
+                        takes(scene, closest, only(hits, inside), numbers);
+                    }
+                }
+                None => {
+                    let polygon = scene.packed.grid_polygon(place);
+                    let hits = polygon_hits(scene, polygon, ray);
+                    takes(scene, closest, only(hits, inside), [polygon.object, 0, 0]);
+                }
+            }
+        }
+        column = end;
+    }
+}
+
+/// What is met, for the rays of a cell alone.
+#[inline(always)]
+fn only<S: Simd>(hits: PrimaryIntersection<S>, inside: M<S>) -> PrimaryIntersection<S> {
+    PrimaryIntersection {
+        hit: hits.hit & inside,
+        possible: hits.possible & inside,
+        ..hits
+    }
+}
