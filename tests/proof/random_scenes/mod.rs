@@ -11,10 +11,13 @@ mod quadrics;
 mod strategy;
 mod triangles;
 
+use std::sync::Arc;
 use std::time::Instant;
 
+use plumb::certify::lanes::{Lanes, OPEN};
 use plumb::render::{Backend, Error, SamplePattern, Settings, render_with};
 use plumb::scene::{Scene, parse};
+use plumb::shader::pack::Packed;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -102,11 +105,40 @@ fn try_scene(plan: &Plan, gpu_too: bool) -> Tried {
             }
         }
         tried.pixels += answer.pixels.len() - tried.skipped;
-        tried.differing.extend(
-            oracle::differences(&scene, &answer, &rgb).map(|d| format!("{backend:?}: {d}")),
-        );
+        let mut pictures = vec![(format!("{backend:?}"), rgb)];
+        if backend == Backend::Cpu {
+            pictures.extend(with_lanes(&scene, &wanted, &pictures[0].1));
+        }
+        for (by, rgb) in pictures {
+            let differences = oracle::differences(&scene, &answer, &rgb);
+            tried
+                .differing
+                .extend(differences.map(|d| format!("{by}: {d}")));
+        }
     }
     tried
+}
+
+/// The picture once more for each kind of vectors that the processor has, with the bytes of the pixels that its lanes
+/// are sure of: a rendering takes the widest alone.
+fn with_lanes(scene: &Scene, wanted: &Settings, rgb: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let lanes = Lanes::new(wanted, || Arc::new(Packed::new(scene, wanted)));
+    let [width, height] = scene.camera.pixeldim;
+    let picture = |(name, lanes): (&str, Lanes)| {
+        let mut words = vec![OPEN; width as usize];
+        let mut rgb = rgb.to_vec();
+        for (y, row) in (0..height).rev().zip(rgb.chunks_mut(3 * width as usize)) {
+            lanes.strip(0, y, &mut words);
+            for (pixel, word) in row.chunks_mut(3).zip(&words) {
+                if *word < OPEN {
+                    pixel.copy_from_slice(&word.to_le_bytes()[..3]);
+                }
+            }
+        }
+        (name.to_owned(), rgb)
+    };
+    let all = lanes.iter().flat_map(Lanes::with_each_vector);
+    all.map(picture).collect()
 }
 
 /// The strategy's scene of this number.
