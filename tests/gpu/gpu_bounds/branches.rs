@@ -50,17 +50,6 @@ fn follow(
     Some(TruePath { start, dir, length })
 }
 
-/// What the functions of branches reach.
-fn bound(world: &World) -> Vec<(u32, &[u8])> {
-    // What tints panes, which the text names too.
-    let lit = world.packed.lit.as_ref().unwrap();
-    let tints = [
-        (8, bytemuck::cast_slice(&world.packed.tiled_planes)),
-        (12, bytemuck::cast_slice(&lit.materials)),
-    ];
-    [&inputs(world)[..], &tints].concat()
-}
-
 /// The ray after some mirrors and panes: how far its line is off at its base, its direction, its start along it, and
 /// the length of the path.
 pub(crate) fn branches(
@@ -126,7 +115,14 @@ pub(crate) fn branches(
     answers[3u * i + 1u] = vec4f(branch.ray.dir, branch.ray.base_error);
     answers[3u * i + 2u] = vec4f(branch.ray.dir_error, branch.ray.start_error, branch.total, branch.total_error);"
     );
-    let answers = run(gpu, wgsl, &body, &items, &bound(world), count, 3);
+    // What tints panes, which the text names too.
+    let lit = world.packed.lit.as_ref().unwrap();
+    let tints = [
+        (8, bytemuck::cast_slice(&world.packed.tiled_planes)),
+        (12, bytemuck::cast_slice(&lit.materials)),
+    ];
+    let bound = [&inputs(world)[..], &tints].concat();
+    let answers = run(gpu, wgsl, &body, &items, &bound, count, 3);
     let mut seen = names.map(BoundStatistics::new);
     for (answer, path) in answers.chunks(3).zip(&paths) {
         let [base, dir, rest] = [answer[0], answer[1], answer[2]].map(|v| v.map(f64::from));
@@ -185,7 +181,7 @@ pub(crate) fn at_spheres(
     answers[2u * i] = vec4f(mirror.ray.dir, select(-1.0, mirror.ray.dir_error, sure));
     answers[2u * i + 1u] = vec4f(mirror.ray.base, mirror.ray.base_error);"
     );
-    let answers = run(gpu, wgsl, &body, &items, &bound(world), count, 2);
+    let answers = run(gpu, wgsl, &body, &items, &inputs(world), count, 2);
     let mut seen = names.map(BoundStatistics::new);
     for (i, ray) in rays.iter().enumerate() {
         let [dir, base] = [0, 1].map(|k| answers[2 * i + k].map(f64::from));
