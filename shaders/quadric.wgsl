@@ -318,7 +318,7 @@ fn quadric_normal(quadric: Quadric, ray: SecondaryRay, t: f32) -> vec4f {
     let further = t - passage.along;
     let gradient = barrier(passage.gradient + further * passage.turn);
     let square = dot(gradient, gradient);
-    let inverse = inverseSqrt(max(square, TINY_SQUARE));
+    let inverse = barrier1(inverseSqrt(max(square, TINY_SQUARE)));
 //#if certified
     let turn = sum3(passage.turn);
     let off = passage.gradient_error + abs(further) * passage.turn_error

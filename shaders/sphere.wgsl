@@ -53,11 +53,11 @@ fn sphere_at(index: u32) -> Sphere {
 // The unit normal that a vector within `error` of it stands for; in its fourth component the bound of its error: that
 // of its direction and that of its length together.
 fn unit_normal(v: vec3f, error: f32) -> vec4f {
-    // Of a normal that is hardly known none at all says as much.
-    let known = error < 1.0;
-    let off = min(error, 1.0);
+    let off = barrier1(min(error, 1.0));
+    // Of a normal that is hardly known none at all says as much: that is off by 1, however large the error is.
+    let known = off < 1.0;
     return vec4f(unit_step(select(vec3f(0.0), v, known)),
-        select(error, off + 2.5 * off * off + UNIT_ROUNDINGS * U, known));
+        select(1.0, off + 2.5 * off * off + UNIT_ROUNDINGS * U, known));
 }
 //#end
 //#end

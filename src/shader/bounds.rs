@@ -85,7 +85,7 @@ named! {
     /// Roundings of base + t·dir.
     POSITION_ROUNDINGS = 5.5, at least 5.0;
     /// Roundings of the normal of a plane.
-    PLANE_NORMAL_ROUNDINGS = 1.5, at least 1.0;
+    PLANE_NORMAL_ROUNDINGS = 1.5, at least 1.42;
     /// How far the perpendicular from a ray to a center turns with the direction, to the first order.
     TURN = 1.02, at least 1.0;
     /// The same, to the second order.

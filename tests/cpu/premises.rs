@@ -34,6 +34,7 @@ const SOURCES: &[&str] = &[
     "shaders/sphere.wgsl",
     "shaders/surface.wgsl",
     "shaders/trace.wgsl",
+    "shaders/unit.wgsl",
     "shaders/world.wgsl",
 ];
 
