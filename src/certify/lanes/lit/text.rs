@@ -36,9 +36,9 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const RIVAL_ROUNDINGS: f32 = 4.0;
     pub(in crate::certify::lanes) const POSITION_ROUNDINGS: f32 = 5.5;
     pub(in crate::certify::lanes) const PLANE_NORMAL_ROUNDINGS: f32 = 1.5;
-    pub(in crate::certify::lanes) const TURN: f32 = 2.0500002;
+    pub(in crate::certify::lanes) const TURN: f32 = 1.0200001;
     pub(in crate::certify::lanes) const TURN_MORE: f32 = 2.0;
-    pub(in crate::certify::lanes) const PERPENDICULAR_ROUNDINGS: f32 = 11.5;
+    pub(in crate::certify::lanes) const PERPENDICULAR_ROUNDINGS: f32 = 18.5;
     pub(in crate::certify::lanes) const SQUARE_SLOPE: f32 = 2.0100002;
     pub(in crate::certify::lanes) const DISC_ROUNDINGS: f32 = 11.5;
     pub(in crate::certify::lanes) const ROOT_ROUNDINGS: f32 = 14.5;
@@ -51,6 +51,8 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const LEAST_SLOPE: f32 = 9.094947e-13;
     pub(in crate::certify::lanes) const NEAREST: f32 = 9.094947e-13;
     pub(in crate::certify::lanes) const NORMAL_ROUNDINGS: f32 = 7.5;
+    pub(in crate::certify::lanes) const UNIT_ROUNDINGS: f32 = 5.0;
+    pub(in crate::certify::lanes) const AIM_ROUNDINGS: f32 = 6.0;
     pub(in crate::certify::lanes) const DIRECTION_ROUNDINGS: f32 = 10.0;
     pub(in crate::certify::lanes) const DOT_ROUNDINGS: f32 = 5.5;
     pub(in crate::certify::lanes) const HEIGHT_ROUNDINGS: f32 = 2.5;
@@ -71,14 +73,14 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const POWER_ROUNDINGS: f32 = 25.0;
     pub(in crate::certify::lanes) const SUM_ROUNDINGS: f32 = 3.0;
     pub(in crate::certify::lanes) const SHARE_ROUNDINGS: f32 = 13.5;
-    pub(in crate::certify::lanes) const MIRROR_TURN: f32 = 4.0400004;
-    pub(in crate::certify::lanes) const MIRROR_STRETCH: f32 = 5.0;
+    pub(in crate::certify::lanes) const MIRROR_TURN: f32 = 2.0400002;
+    pub(in crate::certify::lanes) const MIRROR_GROWTH: f32 = 1.00001;
     pub(in crate::certify::lanes) const LINE_ROUNDINGS: f32 = 6.0;
     pub(in crate::certify::lanes) const WEIGHT_ROUNDINGS: f32 = 2.5;
     pub(in crate::certify::lanes) const PANE_WEIGHT_ROUNDINGS: f32 = 5.0;
     pub(in crate::certify::lanes) const WEIGHT_GROWTH: f32 = 8.0;
     pub(in crate::certify::lanes) const PATH_ROUNDINGS: f32 = 2.5;
-    pub(in crate::certify::lanes) const MIRROR_ROUNDINGS: f32 = 13.5;
+    pub(in crate::certify::lanes) const MIRROR_ROUNDINGS: f32 = 14.0;
     pub(in crate::certify::lanes) const BOUNCE_ROUNDINGS: f32 = 36.0;
     pub(in crate::certify::lanes) const INDEX_ROUNDINGS: f32 = 5.5;
     pub(in crate::certify::lanes) const MOST_INDEX: f32 = 1048576.0;
@@ -412,6 +414,24 @@ pub(super) fn camera_setpix<'a, S: Simd>(
             .select(scene.u32(0), scene.u32(constants::UNDECIDED))
 }
 
+/// A vector of about unit length after a step of Newton's towards it. What is left of a difference of η is 1.5·η².
+#[inline(always)]
+pub(super) fn unit_step<'a, S: Simd>(scene: &'a Scene<'a, S>, v: Vec3<F<S>>) -> Vec3<F<S>> {
+    let square = v.dot(v);
+    let v_2 = 1.5 - 0.5 * square;
+    let v_3 = v * v_2;
+    v_3
+}
+
+/// The direction of a primary ray.
+#[inline(always)]
+pub(super) fn unit_direction<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>) -> Vec3<F<S>> {
+    let v = ray.inverse_length;
+    let v_2 = ray.w * v;
+    let step = unit_step(scene, v_2);
+    step
+}
+
 /// The plane as a primary ray meets it.
 #[inline(always)]
 pub(super) fn plane_hits<'a, S: Simd>(
@@ -597,6 +617,28 @@ pub(super) fn sphere_hits<'a, S: Simd>(
     intersection
 }
 
+/// The unit normal that a vector within `error` of it stands for; in its fourth component the bound of its error: that
+/// of its direction and that of its length together.
+#[inline(always)]
+pub(super) fn unit_normal<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    v: Vec3<F<S>>,
+    error: F<S>,
+) -> Vec4<F<S>> {
+    let off = error.min(scene.f32(1.0));
+    let known = off.lt(scene.f32(1.0));
+    let step = unit_step(scene, known.select(v, Vec3::splat(scene.f32(0.0))));
+    Vec4::new(
+        step.x,
+        step.y,
+        step.z,
+        known.select(
+            off + 2.5 * off * off + constants::UNIT_ROUNDINGS * constants::U,
+            scene.f32(1.0),
+        ),
+    )
+}
+
 /// The unit normal at the hit, outward; in its fourth component the bound of its error.
 #[inline(always)]
 pub(super) fn sphere_normal<'a, S: Simd>(
@@ -633,13 +675,10 @@ pub(super) fn sphere_normal<'a, S: Simd>(
     let parts_error = point.f32(offset_of!(records::SphereHit, form_error))
         + point.f32(offset_of!(records::SphereHit, center_size))
             * (error + constants::ROOT_ROUNDINGS * constants::U * root);
-    Vec4::new(
-        normal.x,
-        normal.y,
-        normal.z,
-        constants::SECOND_ORDER * s * (parts_error + hit.error)
-            + constants::NORMAL_ROUNDINGS * constants::U,
-    )
+    let error_2 = constants::SECOND_ORDER * s * (parts_error + hit.error)
+        + constants::NORMAL_ROUNDINGS * constants::U;
+    let normal_2 = unit_normal(scene, normal, error_2);
+    normal_2
 }
 
 #[inline(always)]
@@ -740,13 +779,13 @@ pub(super) fn sphere_normal_from<'a, S: Simd>(
     let error = root_error(scene, disc, disc_error, inverse_root);
     let reach_error = error + constants::ROOT_ROUNDINGS * constants::U * root;
     let error_2 = constants::SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);
-    Vec4::new(
-        normal.x,
-        normal.y,
-        normal.z,
+    let normal_2 = unit_normal(
+        scene,
+        normal,
         error_2 * sphere.f32(offset_of!(records::WorldSphere, inverse_radius))
             + constants::NORMAL_ROUNDINGS * constants::U,
-    )
+    );
+    normal_2
 }
 
 /// floor(index), from the nearest whole number and the side of it that the index lies on: where that side is certain the
@@ -2473,7 +2512,8 @@ pub(super) fn light_term<'a, S: Simd>(
                 .max(scene.f32(constants::TINY_SQUARE))
                 .inverse_sqrt();
             let distance = toward_2 * inverse;
-            let d = toward * inverse;
+            let v = toward * inverse;
+            let d = unit_step(scene, v);
             let mut c = d.dot(point.normal);
             let toward_error =
                 point.error + constants::U * (light.size + constants::TOWARD_ROUNDINGS * distance);
@@ -2490,8 +2530,8 @@ pub(super) fn light_term<'a, S: Simd>(
             if !on.any() {
                 return result;
             }
-            let d_error = constants::CLOSE * toward_error * inverse
-                + constants::DIRECTION_ROUNDINGS * constants::U;
+            let d_error =
+                constants::CLOSE * toward_error * inverse + constants::AIM_ROUNDINGS * constants::U;
             let distance_error =
                 toward_error + constants::LIMIT_ROUNDINGS * constants::U * distance;
             let mut c_error =
@@ -2591,7 +2631,7 @@ pub(super) fn light_term<'a, S: Simd>(
             }
             let mut emissivity = scene.vec3(light.emissivity);
             if light.projector != 0 {
-                let v = emissivity;
+                let v_2 = emissivity;
                 let texel_2 = passed_texel(
                     scene,
                     state,
@@ -2599,7 +2639,7 @@ pub(super) fn light_term<'a, S: Simd>(
                     &scene.projectors[(light.projector - 1) as usize],
                     passed,
                 );
-                emissivity = v * texel_2;
+                emissivity = v_2 * texel_2;
             }
             let full = diffuse * emissivity * blocked.transmittance * (inverse * scene.camera_unit);
             shade.color = full * c.max(scene.f32(0.0));
@@ -2659,24 +2699,18 @@ pub(super) fn quadric_hits<'a, S: Simd>(
     ray: Ray<S>,
 ) -> PrimaryIntersection<S> {
     let mut intersection = <PrimaryIntersection<S>>::zero(scene.simd);
-    let dir = ray.w * ray.inverse_length;
     let length = ray.w2 * ray.inverse_length;
-    let met = quadric_meets(
-        scene,
-        on,
-        quadric,
-        QuadricRay {
-            base: Vec3::splat(scene.f32(0.0)),
-            dir,
-            start: scene.f32(0.0),
-            base_error: scene.f32(0.0),
-            dir_error: scene.f32(scene.dir_error),
-            size: scene.f32(0.0),
-            start_error: scene.f32(0.0),
-        },
-        scene.f32(-1.0),
-        scene.f32(0.0),
-    );
+    let direction = unit_direction(scene, ray);
+    let seen = QuadricRay {
+        base: Vec3::splat(scene.f32(0.0)),
+        dir: direction,
+        start: scene.f32(0.0),
+        base_error: scene.f32(0.0),
+        dir_error: scene.f32(scene.dir_error),
+        size: scene.f32(0.0),
+        start_error: scene.f32(0.0),
+    };
+    let met = quadric_meets(scene, on, quadric, seen, scene.f32(-1.0), scene.f32(0.0));
     intersection.hit = met.hit & met.t.gt(constants::FIRST_ORDER * met.error);
     intersection.possible = met.possible;
     let nearest = intersection
@@ -2725,10 +2759,10 @@ pub(super) fn as_secondary_ray<'a, S: Simd>(
     scene: &'a Scene<'a, S>,
     ray: Ray<S>,
 ) -> SecondaryRay<S> {
-    let v = ray.w * ray.inverse_length;
+    let direction = unit_direction(scene, ray);
     SecondaryRay {
         base: Vec3::splat(scene.f32(0.0)),
-        dir: v,
+        dir: direction,
         base_error: scene.f32(0.0),
         dir_error: scene.f32(scene.dir_error),
         start_error: scene.f32(0.0),
@@ -2883,9 +2917,9 @@ pub(super) fn mirror_branch<'a, S: Simd>(
     let ordinary_2 = ordinary(scene, ended.weight, specular, mirror.weight);
     state.doubt.set(on, v_2 | !ordinary_2);
     let v_3 = 2.0 * along * point.normal + ended.ray.dir;
-    mirror.ray.dir = v_3;
-    mirror.ray.dir_error = (1.0 + constants::MIRROR_STRETCH * (point.normal_error + constants::U))
-        * ended.ray.dir_error
+    let step = unit_step(scene, v_3);
+    mirror.ray.dir = step;
+    mirror.ray.dir_error = constants::MIRROR_GROWTH * ended.ray.dir_error
         + constants::MIRROR_TURN * point.normal_error
         + constants::MIRROR_ROUNDINGS * constants::U;
     mirror.ray.base_error =
