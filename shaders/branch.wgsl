@@ -70,7 +70,7 @@ fn mirror_slip(ray: SecondaryRay, at: PathPoint) -> vec2f {
 // The mirror image of the ray that ended at a point.
 fn mirror_branch(ended: Branch, at: PathPoint, specular: vec3f) -> Branch {
     let point = at.point;
-    let along = -dot(point.normal, ended.ray.dir);
+    let along = barrier1(-dot(point.normal, ended.ray.dir));
     var mirror: Branch;
     mirror.ray.base = point.position;
     mirror.total = ended.total;
@@ -78,9 +78,9 @@ fn mirror_branch(ended: Branch, at: PathPoint, specular: vec3f) -> Branch {
 //#if certified
     mirror.weight = barrier(ended.weight * specular);
     doubt |= !ordinary(ended.weight, specular, mirror.weight);
-    mirror.ray.dir = barrier(2.0 * along * point.normal + ended.ray.dir);
-    mirror.ray.dir_error = (1.0 + MIRROR_STRETCH * (point.normal_error + U)) * ended.ray.dir_error
-        + MIRROR_TURN * point.normal_error + MIRROR_ROUNDINGS * U;
+    mirror.ray.dir = unit_step(barrier(2.0 * along * point.normal + ended.ray.dir));
+    mirror.ray.dir_error = MIRROR_GROWTH * ended.ray.dir_error + MIRROR_TURN * point.normal_error
+        + MIRROR_ROUNDINGS * U;
     // A mirror is an isometry: how far off the line is does not depend on the angle at which it is met.
     mirror.ray.base_error = (1.0 + LINE_ROUNDINGS * U) * (ended.ray.base_error + at.slip.x);
     mirror.ray.start_error = at.t_error + at.slip.y;

@@ -81,9 +81,13 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
 //#end
     let toward = barrier(light.location - point.position);
     let toward_2 = dot(toward, toward);
-    let inverse = inverseSqrt(max(toward_2, TINY_SQUARE));
+    let inverse = barrier1(inverseSqrt(max(toward_2, TINY_SQUARE)));
     let distance = toward_2 * inverse;
-    let d = barrier(toward * inverse);
+//#if certified
+    let d = unit_step(barrier(toward * inverse));
+//#else
+    let d = toward * inverse;
+//#end
     var c = dot(d, point.normal);
 //#if certified
     let toward_error = point.error + U * (light.size + TOWARD_ROUNDINGS * distance);
@@ -91,7 +95,7 @@ fn light_term(number: u32, point: Point, seen: SecondaryRay, diffuse: vec3f) -> 
         doubt = true;
         return shade;
     }
-    let d_error = CLOSE * toward_error * inverse + DIRECTION_ROUNDINGS * U;
+    let d_error = CLOSE * toward_error * inverse + AIM_ROUNDINGS * U;
     let distance_error = toward_error + LIMIT_ROUNDINGS * U * distance;
     var c_error = d_error + point.normal_error + DOT_ROUNDINGS * U;
 //#if low_light

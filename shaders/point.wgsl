@@ -5,9 +5,9 @@
 // The primary ray as one from anywhere.
 fn as_secondary_ray(ray: Ray) -> SecondaryRay {
 //#if certified
-    return SecondaryRay(vec3f(0.0), barrier(ray.w * ray.inverse_length), 0.0, DIR_ERROR, 0.0, 0.0);
+    return SecondaryRay(vec3f(0.0), unit_direction(ray), 0.0, DIR_ERROR, 0.0, 0.0);
 //#else
-    return SecondaryRay(vec3f(0.0), barrier(ray.w * ray.inverse_length));
+    return SecondaryRay(vec3f(0.0), ray.w * ray.inverse_length);
 //#end
 }
 //#end

@@ -258,11 +258,11 @@ const T_FAR = 1e30f;
 
 // The quadric as a primary ray meets it.
 fn quadric_hits(quadric: Quadric, ray: Ray) -> PrimaryIntersection {
-    let dir = barrier(ray.w * ray.inverse_length);
     let length = ray.w2 * ray.inverse_length;
     var intersection: PrimaryIntersection;
 //#if certified
-    let met = quadric_meets(quadric, QuadricRay(vec3f(0.0), dir, 0.0, 0.0, DIR_ERROR, 0.0, 0.0), -1.0, 0.0);
+    let seen = QuadricRay(vec3f(0.0), unit_direction(ray), 0.0, 0.0, DIR_ERROR, 0.0, 0.0);
+    let met = quadric_meets(quadric, seen, -1.0, 0.0);
     intersection.hit = met.hit & (met.t > FIRST_ORDER * met.error);
     intersection.possible = met.possible;
     // What is not hit for sure may be as near as `low`.
@@ -271,7 +271,7 @@ fn quadric_hits(quadric: Quadric, ray: Ray) -> PrimaryIntersection {
     intersection.error = intersection.inverse
         * (select(0.0, SECOND_ORDER * met.error / nearest, intersection.hit) + LENGTH_ERROR);
 //#else
-    let met = quadric_meets(quadric, QuadricRay(vec3f(0.0), dir, 0.0), -1.0);
+    let met = quadric_meets(quadric, QuadricRay(vec3f(0.0), ray.w * ray.inverse_length, 0.0), -1.0);
     intersection.hit = met.hit;
     intersection.inverse = length / max(met.t, 1e-30);
 //#end
@@ -318,7 +318,7 @@ fn quadric_normal(quadric: Quadric, ray: SecondaryRay, t: f32) -> vec4f {
     let further = t - passage.along;
     let gradient = barrier(passage.gradient + further * passage.turn);
     let square = dot(gradient, gradient);
-    let inverse = inverseSqrt(max(square, TINY_SQUARE));
+    let inverse = barrier1(inverseSqrt(max(square, TINY_SQUARE)));
 //#if certified
     let turn = sum3(passage.turn);
     let off = passage.gradient_error + abs(further) * passage.turn_error

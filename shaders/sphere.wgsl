@@ -47,6 +47,20 @@ fn sphere_at(index: u32) -> Sphere {
 //#end
 }
 //#end
+//#if lit_sphere
+//#if certified
+
+// The unit normal that a vector within `error` of it stands for; in its fourth component the bound of its error: that
+// of its direction and that of its length together.
+fn unit_normal(v: vec3f, error: f32) -> vec4f {
+    let off = barrier1(min(error, 1.0));
+    // Of a normal that is hardly known none at all says as much: that is off by 1, however large the error is.
+    let known = off < 1.0;
+    return vec4f(unit_step(select(vec3f(0.0), v, known)),
+        select(1.0, off + 2.5 * off * off + UNIT_ROUNDINGS * U, known));
+}
+//#end
+//#end
 //#if sphere_point
 
 //#insert struct SphereHit
@@ -68,7 +82,12 @@ fn sphere_normal(index: u32, ray: Ray, hit: Hit) -> vec4f {
         barrier((vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s);
     let parts_error = point.form_error
         + point.center_size * (root_error(least, sphere.disc_error, inverse_root) + ROOT_ROUNDINGS * U * root);
-    return vec4f(normal, SECOND_ORDER * s * (parts_error + hit.error) + NORMAL_ROUNDINGS * U);
+    let error = SECOND_ORDER * s * (parts_error + hit.error) + NORMAL_ROUNDINGS * U;
+//#if lit
+    return unit_normal(normal, error);
+//#else
+    return vec4f(normal, error);
+//#end
 //#else
     let root = sqrt(max(disc, 0.0));
     let normal = (vec3f(dot(point.form_x, at), dot(point.form_y, at), dot(point.form_z, at)) - point.center * root) * s;
@@ -162,7 +181,7 @@ fn sphere_normal_from(sphere: WorldSphere, ray: SecondaryRay) -> vec4f {
         + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
     let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
     let error = SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);
-    return vec4f(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);
+    return unit_normal(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);
 //#else
     return vec4f(normal, 0.0);
 //#end

@@ -85,13 +85,13 @@ named! {
     /// Roundings of base + t·dir.
     POSITION_ROUNDINGS = 5.5, at least 5.0;
     /// Roundings of the normal of a plane.
-    PLANE_NORMAL_ROUNDINGS = 1.5, at least 1.0;
+    PLANE_NORMAL_ROUNDINGS = 1.5, at least 1.42;
     /// How far the perpendicular from a ray to a center turns with the direction, to the first order.
-    TURN = 2.05, at least 2.0;
+    TURN = 1.02, at least 1.0;
     /// The same, to the second order.
     TURN_MORE = 2.0;
     /// Roundings of the perpendicular from a ray to a center.
-    PERPENDICULAR_ROUNDINGS = 11.5, at least 11.0;
+    PERPENDICULAR_ROUNDINGS = 18.5, at least 18.2;
     /// x² − y² is at most |x − y|·(this·x + |x − y|).
     SQUARE_SLOPE = 2.01, at least 2.0;
     /// Roundings of r² − |perpendicular|².
@@ -117,6 +117,10 @@ named! {
     NEAREST = 1.0 / (1_u64 << 40) as f64;
     /// Roundings of a unit normal.
     NORMAL_ROUNDINGS = 7.5, at least 7.0;
+    /// Roundings of a vector after a step towards unit length, which it nearly had; of its length alone one less.
+    UNIT_ROUNDINGS = 5.0, at least 4.6;
+    /// Roundings of the direction to a light.
+    AIM_ROUNDINGS = 6.0, at least 5.6;
     /// Roundings of a vector divided by its length.
     DIRECTION_ROUNDINGS = 10.0, at least 9.5;
     /// Roundings of a dot product of unit vectors.
@@ -160,9 +164,9 @@ named! {
     /// Half of what a ray may bring is within this share of both ends.
     HALF_OPEN = 0.51, at least 0.5001;
     /// How much a mirrored direction turns with the normal.
-    MIRROR_TURN = 4.04, at least 4.004;
-    /// How much a mirror whose normal is off stretches what a direction is off by.
-    MIRROR_STRETCH = 5.0, at least 4.004;
+    MIRROR_TURN = 2.04, at least 2.02;
+    /// What a mirrored direction was off by before, by this, is what it is off by for that afterwards.
+    MIRROR_GROWTH = 1.00001, at least 1.000_008_1;
     /// Roundings of the bounds of a ray's line and of its path's length, at each mirror and pane.
     LINE_ROUNDINGS = 6.0, at least 5.0;
     /// Roundings that a mirror adds to a branch's weight.
@@ -175,7 +179,7 @@ named! {
     /// Roundings of what is left of the longest path.
     PATH_ROUNDINGS = 2.5, at least 2.0;
     /// Roundings of a mirrored direction.
-    MIRROR_ROUNDINGS = 13.5, at least 13.0;
+    MIRROR_ROUNDINGS = 14.0, at least 13.6;
     /// Roundings of where a plane's mirror image of a ray starts, off its line and along it.
     BOUNCE_ROUNDINGS = 36.0, at least 35.3;
     /// Roundings of an index of tiles, blocks or texels.
@@ -231,9 +235,9 @@ named! {
     /// The same with several samples a pixel.
     SAMPLED_LENGTH_ROUNDINGS = 40.0, at least 39.5;
     /// Roundings of W/|W|, likewise.
-    DIR_ROUNDINGS = 14.0, at least 13.5;
+    DIR_ROUNDINGS = 9.0, at least 8.6;
     /// The same with several samples a pixel.
-    SAMPLED_DIR_ROUNDINGS = 19.5, at least 19.0;
+    SAMPLED_DIR_ROUNDINGS = 10.5, at least 10.1;
     /// Roundings of an ambient value, likewise.
     VALUE_ROUNDINGS = 20.0, at least 19.5;
     /// κ may be no larger.

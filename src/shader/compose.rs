@@ -48,9 +48,12 @@ macro_rules! file {
 }
 
 /// The files of every entry point, in their order.
-const FILES: [File; 16] = [
+const FILES: [File; 17] = [
     file!("bindings.wgsl", |_| true),
     file!("camera.wgsl", |_| true),
+    file!("unit.wgsl", |f| f.contains(&Feature::Certified)
+        && (f.contains(&Feature::Lit)
+            || f.contains(&Feature::Quadric))),
     file!("jitter.wgsl", |f| f.contains(&Feature::Samples)
         && !f.contains(&Feature::Course)),
     file!("plane.wgsl", |f| [

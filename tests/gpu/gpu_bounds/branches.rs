@@ -2,9 +2,12 @@
 
 use glam::DVec3;
 use plumb::gpu::device::Gpu;
+use plumb::shader::bounds::ROUNDING;
 
 use super::support::{BoundStatistics, Rng, TrueRay, run};
-use super::world::{RayErrors, TruePlane, World, inputs, ray, true_plane};
+use super::world::{
+    CALL, RayErrors, TruePlane, World, inputs, ray, told, toward_sphere, true_plane,
+};
 
 /// Mirrors and panes on a path.
 const BOUNCES: usize = 4;
@@ -136,6 +139,69 @@ pub(crate) fn branches(
         seen[1].error(turned, rest[0]);
         seen[2].error(along.abs(), rest[1]);
         seen[3].error((rest[2] - length).abs(), rest[3]);
+    }
+    seen
+}
+
+/// The ray after a mirror that is a sphere: its direction, how far its line is off at its base, and its length, which
+/// may be off by 3.6 roundings.
+pub(crate) fn at_spheres(
+    gpu: &Gpu,
+    world: &World,
+    wgsl: &str,
+    errors: RayErrors,
+    count: usize,
+    names: [&'static str; 3],
+) -> [BoundStatistics; 3] {
+    let truth = world.true_spheres();
+    let (mut rng, mut items) = (Rng(13), Vec::new());
+    let rays: Vec<_> = (0..count)
+        .map(|i| {
+            let (center, radius) = truth[i % truth.len()];
+            let ray = toward_sphere(&mut rng, center, radius, errors);
+            told(&mut items, &ray, i % truth.len());
+            ray
+        })
+        .collect();
+    let body = format!(
+        "{CALL}let m = sphere_hits_from(world_spheres[record], ray, range);
+    var hit: SecondaryHit;
+    hit.t = m.t;
+    hit.error = m.error;
+    hit.object = world_spheres[record].object;
+    var at: PathPoint;
+    at.point = locate_secondary(ray, hit);
+    at.t = hit.t;
+    at.t_error = hit.error;
+    at.slip = mirror_slip(ray, at);
+    var branch: Branch;
+    branch.ray = ray;
+    let mirror = mirror_branch(branch, at, vec3f(1.0));
+    let sure = m.hit & (mirror.ray.dir_error <= DIR_LIMIT);
+    answers[2u * i] = vec4f(mirror.ray.dir, select(-1.0, mirror.ray.dir_error, sure));
+    answers[2u * i + 1u] = vec4f(mirror.ray.base, mirror.ray.base_error);"
+    );
+    let answers = run(gpu, wgsl, &body, &items, &inputs(world), count, 2);
+    let mut seen = names.map(BoundStatistics::new);
+    for (i, ray) in rays.iter().enumerate() {
+        let [dir, base] = [0, 1].map(|k| answers[2 * i + k].map(f64::from));
+        if dir[3] < 0.0 {
+            seen[0].decision(false, true, true);
+            continue;
+        }
+        let (center, radius) = truth[i % truth.len()];
+        let to_center = center - ray.base;
+        let along = to_center.dot(ray.dir);
+        let apart = to_center - along * ray.dir;
+        let root = ((radius - apart.length()) * (radius + apart.length())).sqrt();
+        let hit = ray.base + (along - root) * ray.dir;
+        let normal = (hit - center) / radius;
+        let mirrored = ray.dir - 2.0 * normal.dot(ray.dir) * normal;
+        let found = DVec3::from_slice(&dir[..3]);
+        seen[0].error((found - mirrored).length(), dir[3]);
+        let off = DVec3::from_slice(&base[..3]) - hit;
+        seen[1].error((off - off.dot(mirrored) * mirrored).length(), base[3]);
+        seen[2].error((found.length() - 1.0).abs(), 3.6 * ROUNDING);
     }
     seen
 }

@@ -33,10 +33,12 @@ pub(crate) fn of_the_least(gpu: &Gpu) -> Vec<(&'static str, usize)> {
         let planes = world::planes(gpu, &world, &wgsl, errors, COUNT, ["planes"; 2]);
         let spheres = world::spheres(gpu, &world, &wgsl, errors, COUNT, ["spheres"; 3]);
         let paths = branches::branches(gpu, &world, &wgsl, errors, COUNT, ["paths"; 4]);
+        let mirrors = branches::at_spheres(gpu, &world, &wgsl, errors, COUNT, ["spheres"; 3]);
         found.extend([
             ("planes", total(&planes)),
             ("spheres", total(&spheres)),
             ("mirrors and panes", total(&paths)),
+            ("mirrors that are spheres", total(&mirrors)),
         ]);
     }
     let [blocks, from_point] = surfaces::blocks(gpu, &world, &wgsl, COUNT);

@@ -154,6 +154,31 @@ fn rays_after_mirrors_and_panes() {
     for seen in branches(RayErrors::Off, off) {
         seen.judge(10_000, TIGHT_BOUNCED);
     }
+    let spheres = |wgsl: &str, errors, names| {
+        branches::at_spheres(&gpu, &world, wgsl, errors, MANY / 2, names)
+    };
+    let exact = [
+        "direction after a sphere, exact ray",
+        "line after a sphere, exact ray",
+        "length after a sphere, exact ray",
+    ];
+    for seen in spheres(&world.wgsl, RayErrors::Exact, exact) {
+        seen.judge(DECIDED, TIGHT);
+    }
+    let off = [
+        "direction after a sphere, ray off",
+        "line after a sphere, ray off",
+        "length after a sphere, ray off",
+    ];
+    let [direction, line, length] = spheres(&world.wgsl, RayErrors::Off, off);
+    direction.judge(10_000, TIGHT_BOUNCED);
+    line.judge(10_000, TIGHT_BOUNCED);
+    length.judge(10_000, TIGHT);
+    for name in ["MIRROR_TURN", "TURN"] {
+        let without = support::with_constant(&faults::at_least(&world.wgsl), name, "0f");
+        let [direction, ..] = spheres(&without, RayErrors::Off, off);
+        assert!(direction.violations() > 0, "{name} = 0 is not noticed");
+    }
 }
 
 #[test]

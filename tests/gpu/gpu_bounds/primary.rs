@@ -216,7 +216,7 @@ impl SampledPicture {
         let body = format!(
             "{}
     answers[4u * i] = vec4f(ray.w, W_ERROR);
-    answers[4u * i + 1u] = vec4f(ray.w * ray.inverse_length, DIR_ERROR);
+    answers[4u * i + 1u] = vec4f(unit_direction(ray), DIR_ERROR);
     let share = CAMERA_GAIN * ray.inverse_length;
     let near = fract(abs(ray.w.x) * 977.0) + 0.125;
     let value = vec3f(near) * (share * near);
@@ -224,7 +224,9 @@ impl SampledPicture {
     answers[4u * i + 3u] = vec4f(value.x, VALUE_ERROR * value.x, near, 0.0);",
             self.begin()
         );
-        let answers = run(gpu, wgsl, &body, &items, &[], count, 4);
+        // What only scenes with lights or quadrics have.
+        let wgsl = format!("{wgsl}{}", include_str!("../../../shaders/unit.wgsl"));
+        let answers = run(gpu, &wgsl, &body, &items, &[], count, 4);
         for (answer, w) in answers.chunks(4).zip(rays) {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| answer[k].map(f64::from));
             let vector = |v: [f64; 4]| DVec3::new(v[0], v[1], v[2]);

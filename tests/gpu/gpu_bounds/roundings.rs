@@ -28,6 +28,12 @@ fn units(rng: &mut Rng) -> [DVec3; 3] {
     [rng.unit(), rng.unit(), DVec3::ONE]
 }
 
+/// Directions whose length is off by as much as that of a primary ray's may be.
+fn nearly_units(rng: &mut Rng) -> [DVec3; 3] {
+    let length = 1.0 + rng.uniform(-5e-5, 5e-5);
+    [rng.unit(), rng.unit() * length, DVec3::ONE]
+}
+
 /// What leads from a center at right angles to a ray; the ray's direction; the radius, its inverse and the root.
 fn past_a_sphere(rng: &mut Rng) -> [DVec3; 3] {
     let (r, share, dir) = (rng.log(-2.0, 2.0), rng.uniform(0.0, 1.0), rng.unit());
@@ -98,6 +104,18 @@ const COUNTED: &[Counted] = &[
         wgsl: "a * inverseSqrt(max(dot(a, a), TINY_SQUARE))",
         operands: any,
         truth: |[a, ..]| (a.normalize(), 1.0),
+    },
+    Counted {
+        constant: "AIM_ROUNDINGS",
+        wgsl: "unit_step(barrier(a * barrier1(inverseSqrt(max(dot(a, a), TINY_SQUARE)))))",
+        operands: any,
+        truth: |[a, ..]| (a.normalize(), 1.0),
+    },
+    Counted {
+        constant: "UNIT_ROUNDINGS",
+        wgsl: "unit_step(b)",
+        operands: nearly_units,
+        truth: |[_, b, _]| (b.normalize(), 1.0),
     },
     Counted {
         constant: "DOT_ROUNDINGS",
@@ -177,9 +195,9 @@ const COUNTED: &[Counted] = &[
     },
     Counted {
         constant: "MIRROR_ROUNDINGS",
-        wgsl: "2.0 * -dot(a, b) * a + b",
+        wgsl: "unit_step(barrier(2.0 * barrier1(-dot(a, b)) * a + b))",
         operands: units,
-        truth: |[a, b, _]| (b - 2.0 * a.dot(b) * a, 1.0),
+        truth: |[a, b, _]| ((b - 2.0 * a.dot(b) * a).normalize(), 1.0),
     },
 ];
 

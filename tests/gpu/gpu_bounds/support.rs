@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use plumb::gpu::adapters;
 use plumb::gpu::device::Gpu;
-use plumb::shader::bounds::round_up;
+use plumb::shader::bounds::{ROUNDING, round_up};
 use plumb::shader::records::Dispatch;
 use wgpu::util::DeviceExt as _;
 
@@ -79,6 +79,7 @@ impl TrueRay {
         ways: [DVec3; 2],
         slack: f64,
     ) -> Self {
+        let stretch = 1.0 + 2.5 * ROUNDING * (1e3 * (base.x + dir.y)).sin();
         let base = if errors[0] > 0.0 {
             base
         } else {
@@ -86,7 +87,8 @@ impl TrueRay {
         };
         let dir = dir.normalize();
         let (told_base, near_base) = rounded(base + errors[0] * ways[0]);
-        let (told_dir, near_dir) = rounded(dir + errors[1] * ways[1]);
+        // Directions that the shaders make are of unit length, but for a few roundings.
+        let (told_dir, near_dir) = rounded((dir + errors[1] * ways[1]).normalize() * stretch);
         let base_error = round_up((near_base - base).length() * slack);
         let dir_error = round_up((near_dir - dir).length() * slack);
         let size = told_base.iter().map(|x| x.abs()).sum();

@@ -171,6 +171,17 @@ impl World {
         }
     }
 
+    /// Centers, seen from the viewpoint, and radii of the spheres, in the order of their records.
+    pub(crate) fn true_spheres(&self) -> Vec<(DVec3, f64)> {
+        let records = self.packed.lit.iter().flat_map(|lit| &lit.spheres);
+        records
+            .map(|r| match self.scene.objects[r.object as usize].shape {
+                Shape::Sphere { center, radius } => (seen_from_viewpoint(center), radius / UNIT),
+                Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => panic!("no sphere"),
+            })
+            .collect()
+    }
+
     pub(crate) fn many() -> Self {
         let scene = scene(&mut Rng(1), 4096, 4096);
         Self::of(scene, &Settings::default())
@@ -330,7 +341,7 @@ fn toward_plane(rng: &mut Rng, plane: &TruePlane, errors: RayErrors) -> TrueRay 
     ray(rng, errors, target - dir * distance, dir, plane.normal)
 }
 
-const CALL: &str = "
+pub(crate) const CALL: &str = "
     let a = items[3u * i];
     let b = items[3u * i + 1u];
     let c = items[3u * i + 2u];
@@ -350,7 +361,7 @@ const INTERSECTION: &str = "
     answers[4u * i + 3u] = vec4f(p.position, p.error);
 ";
 
-fn told(items: &mut Vec<f32>, ray: &TrueRay, record: usize) {
+pub(crate) fn told(items: &mut Vec<f32>, ray: &TrueRay, record: usize) {
     let start = items.len();
     items.extend(ray.told);
     items[start + 3] = f32::from_bits(record as u32);
@@ -429,7 +440,12 @@ pub(crate) fn planes(
 }
 
 /// A ray past the sphere's middle, or past its edge, from near or far, from inside, from the sphere itself.
-fn toward_sphere(rng: &mut Rng, center: DVec3, radius: f64, errors: RayErrors) -> TrueRay {
+pub(crate) fn toward_sphere(
+    rng: &mut Rng,
+    center: DVec3,
+    radius: f64,
+    errors: RayErrors,
+) -> TrueRay {
     let dir = rng.unit();
     let across = dir.cross(rng.unit()).normalize();
     let apart = match rng.below(8) {
@@ -458,13 +474,7 @@ pub(crate) fn spheres(
     names: [&'static str; 3],
 ) -> [BoundStatistics; 3] {
     let records = &world.packed.lit.as_ref().unwrap().spheres;
-    let truth: Vec<_> = records
-        .iter()
-        .map(|r| match world.scene.objects[r.object as usize].shape {
-            Shape::Sphere { center, radius } => (seen_from_viewpoint(center), radius / UNIT),
-            Shape::Plane { .. } | Shape::Triangle(_) | Shape::Quadric(_) => panic!("no sphere"),
-        })
-        .collect();
+    let truth = world.true_spheres();
     let mut rng = Rng(3);
     let mut items = Vec::new();
     let rays: Vec<_> = (0..count)
