@@ -4,8 +4,8 @@
 use eframe::egui::{self, Ui};
 
 use super::session::Session;
-use super::side::Wanted;
 use super::values::{neat, short};
+use super::wanted::Wanted;
 use crate::edit::{Target, Value};
 use crate::scene::{self, Bounds, EntityId, NumberRow, Quantity, Scene};
 

@@ -8,9 +8,11 @@ use std::time::Instant;
 use eframe::egui::{self, Context};
 use glam::DVec3;
 
-use super::{App, Event};
+use super::App;
+use super::events::Event;
 use crate::edit::{Target, Value, camera_block};
 use crate::preview::chooser::Purpose;
+use crate::preview::entities::title;
 use crate::preview::keys::{self, Command};
 use crate::preview::overlay::SaveAs;
 use crate::preview::picture;
@@ -18,14 +20,15 @@ use crate::preview::priority;
 use crate::preview::save;
 use crate::preview::selection::Selection;
 use crate::preview::session;
-use crate::preview::side::Wanted;
 use crate::preview::undo::{Direction, Step};
 use crate::preview::viewport::{self, Area, Viewport};
+use crate::preview::wanted::Wanted;
 use crate::scene::{self, EntityId, LoadError, Scene};
 
 impl App {
-    /// The keys that were struck since the last frame, unless something is asked.
-    pub(super) fn take_keys(&mut self, context: &Context) {
+    /// The keys that were struck since the last frame, unless something is asked. What the mouse did before a key
+    /// counts before it: such keys are returned, to be obeyed once panels and picture have taken the mouse.
+    pub(super) fn take_keys(&mut self, context: &Context) -> Vec<Command> {
         let presses = context.input(|input| {
             let is_press = |event: &&egui::Event| {
                 matches!(event, egui::Event::PointerButton { pressed: true, .. })
@@ -33,16 +36,21 @@ impl App {
             input.events.iter().filter(is_press).count()
         });
         self.presses += presses as u64;
-        let mut commands = std::mem::take(&mut self.deferred);
-        if self.save_as.is_none() && self.chooser.is_none() && !self.leaving.asks() {
-            self.deferred = keys::leaves_field(context);
-            if self.deferred.is_empty() {
-                commands.extend(keys::pressed(context));
-            }
-        }
-        for command in commands {
+        for command in std::mem::take(&mut self.deferred) {
             self.obey(context, command);
         }
+        if self.save_as.is_some() || self.chooser.is_some() || self.leaving.asks() {
+            return Vec::new();
+        }
+        self.deferred = keys::leaves_field(context);
+        if !self.deferred.is_empty() {
+            return Vec::new();
+        }
+        let (early, late) = keys::pressed(context);
+        for command in early {
+            self.obey(context, command);
+        }
+        late
     }
 
     /// The viewpoint as it is shown, and the scene as the file has it.
@@ -87,8 +95,8 @@ impl App {
         let state = self.shared.lock();
         if let Some(good) = state.session.good() {
             self.side.selection.select(&good.scene, entity);
-            let title = entity.and_then(|entity| session::title(&good.scene, entity));
-            let (kind, name) = title.unwrap_or(("nothing", ""));
+            let titled = entity.and_then(|entity| title(&good.scene, entity));
+            let (kind, name) = titled.unwrap_or(("nothing", ""));
             log::info!("selected {kind} {name}");
         }
     }

@@ -7,6 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::edit::{Target, Value};
 use crate::preview::session::{News, Version};
 use crate::preview::undo::Step;
 

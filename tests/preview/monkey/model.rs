@@ -38,6 +38,15 @@ impl Model {
             .count()
     }
 
+    /// A scene was opened: nothing is known of it, and there is nothing to be undone.
+    pub(crate) fn forget(&mut self) {
+        let counts = std::mem::take(&mut self.counts);
+        *self = Self {
+            counts,
+            ..Self::default()
+        };
+    }
+
     /// Takes what the log says. What is wrong with it, if anything is.
     pub(crate) fn take(&mut self, line: &str) -> Result<(), String> {
         let mut words = line.split("; ");
