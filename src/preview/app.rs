@@ -26,6 +26,7 @@ use super::chooser::Chooser;
 use super::draw::ObjectMap;
 use super::handles::Grabbed;
 use super::hints::Hints;
+use super::input::Waiting;
 use super::inspect::Inspector;
 use super::inspector::Panel;
 use super::keys::Command;
@@ -86,6 +87,8 @@ pub(super) struct App {
     clicked: Option<[u32; 2]>,
     /// The handle that is dragged.
     grabbed: Option<Grabbed>,
+    /// What the user did that is not this frame's.
+    waiting: Waiting,
     /// How often a button of the mouse was pressed.
     presses: u64,
     area: Option<Rect>,
@@ -171,6 +174,7 @@ impl App {
             over: None,
             clicked: None,
             grabbed: None,
+            waiting: Waiting::default(),
             presses: 0,
             area: None,
             help_open: false,
@@ -239,6 +243,13 @@ impl App {
 }
 
 impl eframe::App for App {
+    fn raw_input_hook(&mut self, context: &Context, input: &mut egui::RawInput) {
+        self.waiting.take_turns(&mut input.events);
+        if !self.waiting.is_empty() {
+            context.request_repaint();
+        }
+    }
+
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         self.listen();
         self.set_title(context);
@@ -246,7 +257,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        let late = self.take_keys(&context);
+        self.take_keys(&context);
         self.panels.room = ui.max_rect().size();
         let room = self.panels.room;
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
@@ -280,9 +291,6 @@ impl eframe::App for App {
             }
         }
         egui::CentralPanel::no_frame().show(ui, |ui| self.middle(ui));
-        for command in late {
-            self.obey(&context, command);
-        }
         self.dialogs(&context);
         self.leave(&context);
         self.ask();

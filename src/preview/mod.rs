@@ -20,6 +20,7 @@ mod draw;
 mod entities;
 mod handles;
 mod hints;
+mod input;
 mod inspect;
 mod inspector;
 mod keys;

@@ -234,6 +234,13 @@ impl Session {
         (is_size && self.size.is_some()).then_some("--size counts, and not the file's pixeldim")
     }
 
+    /// Whether a value may be there, beside what else is changed.
+    pub(super) fn allows(&self, target: Target, value: Value) -> bool {
+        let mut changes = self.changes.clone();
+        let origin = self.origin.as_ref();
+        origin.is_some_and(|origin| changes.set(&origin.scene, target, value).is_ok())
+    }
+
     /// Changes a value on top of the file; to what the file has is no change. What the scene language does not allow is
     /// said, and changes nothing. Whether there is something else to be rendered.
     pub(super) fn set(&mut self, target: Target, value: Value, step: Step) -> bool {

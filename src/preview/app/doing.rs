@@ -26,9 +26,8 @@ use crate::preview::wanted::Wanted;
 use crate::scene::{self, EntityId, LoadError, Scene};
 
 impl App {
-    /// The keys that were struck since the last frame, unless something is asked. What the mouse did before a key
-    /// counts before it: such keys are returned, to be obeyed once panels and picture have taken the mouse.
-    pub(super) fn take_keys(&mut self, context: &Context) -> Vec<Command> {
+    /// The keys that were struck since the last frame, unless something is asked.
+    pub(super) fn take_keys(&mut self, context: &Context) {
         let presses = context.input(|input| {
             let is_press = |event: &&egui::Event| {
                 matches!(event, egui::Event::PointerButton { pressed: true, .. })
@@ -36,21 +35,16 @@ impl App {
             input.events.iter().filter(is_press).count()
         });
         self.presses += presses as u64;
-        for command in std::mem::take(&mut self.deferred) {
+        let mut commands = std::mem::take(&mut self.deferred);
+        if self.save_as.is_none() && self.chooser.is_none() && !self.leaving.asks() {
+            self.deferred = keys::leaves_field(context);
+            if self.deferred.is_empty() {
+                commands.extend(keys::pressed(context));
+            }
+        }
+        for command in commands {
             self.obey(context, command);
         }
-        if self.save_as.is_some() || self.chooser.is_some() || self.leaving.asks() {
-            return Vec::new();
-        }
-        self.deferred = keys::leaves_field(context);
-        if !self.deferred.is_empty() {
-            return Vec::new();
-        }
-        let (early, late) = keys::pressed(context);
-        for command in early {
-            self.obey(context, command);
-        }
-        late
     }
 
     /// The viewpoint as it is shown, and the scene as the file has it.

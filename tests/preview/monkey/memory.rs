@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 /// of several minutes say whether it is steady.
 pub(crate) const WARM_UP: Duration = Duration::from_secs(60);
 
-/// The most that a window has in a stretch of time may be so much more than the most that it had in the first one after
-/// it was warm: pictures of several sizes, a thousand steps, texts.
-const GROWTH_KIB: u64 = 40 * 1024;
+/// The most that a window has in the last quarter of its warm life may be so much more than in the quarter before: what
+/// grows ever more slowly is steady in the end, and what grows evenly is not, once it has lived long enough.
+const GROWTH_KIB: u64 = 30 * 1024;
 
 /// What a window had, the most in each stretch of time, in KiB.
 pub(crate) struct Memory {
@@ -39,13 +39,13 @@ impl Memory {
         self.most[stretch] = self.most[stretch].max(kib);
     }
 
-    /// Whether it did not grow since it was warm, as far as is known.
+    /// Whether it does not grow any more, as far as is known.
     pub(crate) fn is_steady(&self) -> bool {
-        let mut warm = self.most.iter().skip(1);
-        let Some(first) = warm.next() else {
-            return true;
-        };
-        warm.all(|most| *most < first + GROWTH_KIB)
+        let warm = self.most.get(1..).unwrap_or_default();
+        let quarter = warm.len() / 4;
+        let last = warm.iter().rev();
+        let most = |before: usize| last.clone().skip(before).take(quarter).max();
+        most(0) <= most(quarter).map(|most| most + GROWTH_KIB).as_ref()
     }
 }
 
@@ -67,6 +67,9 @@ fn memory_that_grows_is_noticed() {
         memory.is_steady()
     };
     assert!(steady(&[]) && steady(&[100]) && steady(&[100, 300]));
-    assert!(steady(&[100, 300, 250, 310, 339]));
-    assert!(!steady(&[100, 300, 310, 341]));
+    assert!(steady(&[100, 250, 300, 310, 339]));
+    assert!(!steady(&[100, 250, 300, 310, 341]));
+    // It grows more slowly all the time, or it does not.
+    assert!(steady(&[100, 200, 250, 280, 300, 310, 316, 320, 322]));
+    assert!(!steady(&[100, 200, 220, 240, 260, 280, 300, 320, 340]));
 }

@@ -168,7 +168,8 @@ fn number(text: &str) -> Result<(String, Vec<f64>), String> {
     let (key, values) = text
         .split_once(" [")
         .ok_or(format!("{text} is no number"))?;
-    let values = values.trim_end_matches(']').split(", ");
+    // What is left out has none.
+    let values = values.trim_end_matches(']').split_terminator(", ");
     let values: Result<_, _> = values.map(str::parse).collect();
     let values = values.map_err(|error| format!("{text}: {error}"))?;
     Ok((key.to_owned(), values))
