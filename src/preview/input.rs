@@ -8,6 +8,10 @@ use std::collections::VecDeque;
 
 use eframe::egui::{Event, Key};
 
+/// Where more events than so many wait, more is done than frames can follow: all of them are one frame's then, since a
+/// window that lags behind is worse than a click that is elsewhere.
+const MOST: usize = 48;
+
 /// What an event is to the order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
@@ -81,10 +85,12 @@ impl Waiting {
     /// Takes the events that came, and leaves those of them and of earlier ones that are this frame's.
     pub(super) fn take_turns(&mut self, events: &mut Vec<Event>) {
         self.events.extend(events.drain(..));
+        let in_turn = self.events.len() <= MOST;
         let mut last = None;
         while let Some(event) = self.events.pop_front() {
             let step = Step::of(&event);
-            if let (Some(last), Some(step)) = (last, step)
+            if in_turn
+                && let (Some(last), Some(step)) = (last, step)
                 && !step.follows(last, self.held > 0)
             {
                 self.events.push_front(event);
@@ -183,6 +189,16 @@ mod tests {
         }
         waiting.take_turns(&mut events);
         assert!(events.is_empty());
+    }
+
+    #[test]
+    fn more_than_frames_can_follow_is_one_frame() {
+        let mut waiting = Waiting::default();
+        let mut events = vec![button(1.0, true), moved(2.0)].repeat(MOST);
+        let all = events.clone();
+        waiting.take_turns(&mut events);
+        assert_eq!(events, all);
+        assert!(waiting.is_empty());
     }
 
     #[test]
