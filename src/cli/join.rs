@@ -32,8 +32,8 @@ EXAMPLES
   plumb join big.png --remove            and then the parts are not needed
   plumb join big.png --parts 64 --check  only tell what is missing
   plumb join - --parts-in parts | …      PPM on stdout
-  sbatch --array=$(plumb join big.png --parts 64) job.sh
-                                         makes again what is missing")]
+  plumb join big.png --parts 64 --check | xargs -r -I {} sbatch --array={} job.sh
+                                         makes again what is missing, if anything is")]
 pub(crate) struct Args {
     /// The picture, by its ending .ppm, .png or .exr; `-` is stdout, as PPM
     output: PathBuf,
@@ -261,23 +261,26 @@ fn tell_missing(args: &Args, survey: &Survey, target: &Target) -> Result<Answer>
         }
         if !absent.is_empty() {
             let what = if absent.len() == 1 {
-                "part is"
+                "this part is"
             } else {
-                "parts are"
+                "these parts are"
             };
             let path = survey.folder().path().display();
-            say::note(&format!(
-                "these {what} not in {path}: {}",
-                parts::list(&absent)
-            ));
+            say::note(&format!("{what} not in {path}: {}", parts::list(&absent)));
         }
         if survey.pictures().len() > 1 {
             say::note(&several(survey.pictures()));
         }
-        let left = count(missing.len(), "part");
-        say::note(&format!(
-            "{target} is not made: {left} of {parts} to be made"
-        ));
+        let left = match missing.len() {
+            1 => "1 part is".to_owned(),
+            many => format!("{many} parts are"),
+        };
+        let not_made = if args.check {
+            String::new()
+        } else {
+            format!("{target} is not made: ")
+        };
+        say::note(&format!("{not_made}{left} to be made, of {parts}"));
     }
     say::data(&format!("{}\n", parts::list(&missing)))?;
     Ok(Answer::No)
@@ -297,7 +300,9 @@ fn several(pictures: &[(Header, Vec<u32>)]) -> String {
                 .any(|(other, _)| !other.texts.contains(text))
         };
         let differs = header.texts.iter().filter(of_another);
-        let mut told: Vec<String> = differs.map(|(key, text)| format!("{key} {text}")).collect();
+        let mut told: Vec<String> = differs
+            .map(|(key, text)| format!("{} {text}", key.strip_prefix("plumb:").unwrap_or(key)))
+            .collect();
         if told.is_empty() {
             let id = format!("{:?}", header.identity);
             told.push(format!("a scene or a cut of its own ({})", &id[..8]));

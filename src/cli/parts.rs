@@ -76,6 +76,31 @@ pub(crate) fn folder_of(output: &Path) -> PathBuf {
     name.into()
 }
 
+/// Refuses a folder of parts that lies in none: where a disk is missing on a node, its parts would be made elsewhere.
+pub(crate) fn refuse_lost(folder: &Path) -> Result<()> {
+    let above = folder
+        .parent()
+        .filter(|above| !above.as_os_str().is_empty());
+    match above.filter(|above| !above.is_dir()) {
+        Some(above) => bail!(
+            "cannot make the folder {}: the folder {} does not exist",
+            folder.display(),
+            above.display()
+        ),
+        None => Ok(()),
+    }
+}
+
+/// Makes the folder of the parts, unless it is there.
+fn make(folder: &Path) -> Result<()> {
+    refuse_lost(folder)?;
+    match fs::create_dir(folder) {
+        // Other parts are made at the same time.
+        Err(_) if folder.is_dir() => Ok(()),
+        made => made.with_context(|| format!("cannot make the folder {}", folder.display())),
+    }
+}
+
 /// Refuses what parts cannot have.
 pub(crate) fn refuse(options: &RenderOptions) -> Result<()> {
     if options.precision == PrecisionName::Fast {
@@ -94,8 +119,7 @@ pub(crate) fn run(command: &RenderCommand<'_>, job: &Job<'_>) -> Result<Answer> 
     let start = Instant::now();
     let picture = Picture::new(command, job)?;
     let folder = picture.folder.path();
-    fs::create_dir_all(folder)
-        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    make(folder)?;
     match job.part {
         Some(part) => picture.part(part.number, start),
         None => picture.resume(start),

@@ -18,7 +18,8 @@ use plumb::image::{Format, check_size};
 use plumb::parts::{Cut, Work};
 
 use super::args::RenderOptions;
-use super::parts::folder_of;
+use super::destination::Destination;
+use super::parts::{folder_of, refuse_lost};
 use super::values::{parts as parts_value, whole};
 use super::{Answer, say, source};
 use script::{Script, What};
@@ -100,7 +101,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
         picture(args, output)?
     };
     let script = Script {
-        name: job_name(output),
+        name: job_name(what.output()),
         plumb: env::current_exe().context("cannot tell where plumb is")?,
         folder: env::current_dir().context("cannot tell which folder this is")?,
         options: options(),
@@ -127,6 +128,8 @@ fn picture(args: &Args, output: &Path) -> Result<What> {
     let parts = args.parts.unwrap_or(1);
     let mut loaded = load(scene)?;
     args.render.picture.apply(&mut loaded);
+    let target = Destination::of(Some(output)).target(Some(scene))?;
+    let output = target.path();
     let format = Format::from_path(output)?;
     let settings = args.render.settings(&loaded, format.wants_values())?;
     super::parts::refuse(&args.render)?;
@@ -134,17 +137,25 @@ fn picture(args: &Args, output: &Path) -> Result<What> {
     let rows = settings.rows_of(height);
     check_size(format, width, rows.len() as u32)?;
     Cut::new(rows, &Work::even(), parts)?;
+    target.identity()?;
+    let folder = args.parts_in.clone();
+    let folder = folder.unwrap_or_else(|| folder_of(output));
+    refuse_lost(&folder)?;
+    if settings.values && args.gpus_per_task.is_some() {
+        say::note(
+            "the values of an EXR are computed on the CPU: the tasks' GPUs will have nothing to do",
+        );
+    }
     if parts > TASKS {
         say::note(&format!(
             "{parts} parts are more tasks than a job array has unless the cluster allows more: `scontrol show config | \
              grep MaxArraySize` tells; {TASKS} always go"
         ));
     }
-    let folder = args.parts_in.clone();
     Ok(What::Parts {
         scene: scene.clone(),
         output: output.to_owned(),
-        folder: folder.unwrap_or_else(|| folder_of(output)),
+        folder,
         parts,
         remove: args.remove,
     })
@@ -152,12 +163,12 @@ fn picture(args: &Args, output: &Path) -> Result<What> {
 
 /// A picture of each scene.
 fn frames(args: &Args, output: &Path) -> Result<What> {
-    let Some(pattern) = output.to_str().filter(|output| output.contains(NAME)) else {
+    let destination = Destination::of(Some(output));
+    if let Destination::Name(_) = destination {
         bail!(
             "with --frames -o names many pictures: put {NAME} where the scene's name goes, as in 'film/{NAME}.png'"
         );
-    };
-    Format::from_path(output)?;
+    }
     if args.render.verdicts.is_some() {
         bail!("--verdicts names one picture, and there are many: leave it out");
     }
@@ -165,20 +176,10 @@ fn frames(args: &Args, output: &Path) -> Result<What> {
     let mut pictures = Vec::new();
     for scene in &args.scenes {
         load(scene)?;
-        let Some(stem) = scene.file_stem().and_then(OsStr::to_str) else {
-            bail!("{} has no name to call its picture by", scene.display());
-        };
-        let picture = PathBuf::from(pattern.replace(NAME, stem));
-        let folder = picture
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            bail!(
-                "cannot write {}: the folder {} does not exist",
-                picture.display(),
-                folder.display()
-            );
-        }
+        let target = destination.target(Some(scene))?;
+        Format::from_path(target.path())?;
+        target.identity()?;
+        let picture = target.path().to_owned();
         if let Some(other) = known.insert(picture.clone(), scene) {
             let (other, scene, picture) = (other.display(), scene.display(), picture.display());
             bail!("{other} and {scene} would both become {picture}");
@@ -279,29 +280,28 @@ fn job_name(output: &Path) -> String {
 /// Writes the script into this folder, and runs it.
 fn submit(name: &str, text: &[u8]) -> Result<Answer> {
     let path = PathBuf::from(format!("{name}.sh"));
-    let cannot = || format!("cannot write {}", path.display());
-    match fs::read(&path) {
-        Ok(old) if !script::is_ours(&old) => {
-            bail!(
-                "{} is there, and is not one of plumb's scripts: it is left alone",
-                path.display()
-            )
-        }
-        _ => fs::write(&path, text).with_context(cannot)?,
+    let shown = path.display();
+    let old = fs::read(&path).ok();
+    if old.as_ref().is_some_and(|old| !script::is_ours(old)) {
+        bail!("{shown} is there, and is not one of plumb's scripts: it is left alone");
     }
-    say::note(&format!(
-        "the script is {}; `bash {} missing` submits what is missing later",
-        path.display(),
-        path.display()
-    ));
+    fs::write(&path, text).with_context(|| format!("cannot write {shown}"))?;
+    let replaces = if old.is_some_and(|old| old != text) {
+        ", in place of another one of that name"
+    } else {
+        ""
+    };
+    say::note(&format!("the script is {shown}{replaces}"));
     let status = Command::new("bash").arg(&path).status();
     let status = status.context("cannot run bash")?;
     if !status.success() {
         bail!(
-            "{} was not submitted: `bash {}` tries again, where sbatch is",
-            path.display(),
-            path.display()
+            "not all of it was submitted. Where sbatch refused an option, the same command with another one writes \
+             {shown} anew; where there is no sbatch, `bash {shown}` is for where there is"
         );
     }
+    say::note(&format!(
+        "when these jobs have ended, `bash {shown} missing` submits what is missing, if anything is"
+    ));
     Ok(Answer::Yes)
 }

@@ -168,11 +168,13 @@ impl Cluster {
 
     /// Waits until no job is left.
     pub(crate) fn settle(&self) {
-        self.wait("jobs do not end", |cluster| {
-            let queue = cluster.command("squeue").args(["-h"]).output().unwrap();
-            assert!(queue.status.success());
-            queue.stdout.is_empty()
-        });
+        self.wait("jobs do not end", |cluster| cluster.has_no_jobs().unwrap());
+    }
+
+    /// Whether no job is left; none if Slurm does not answer.
+    fn has_no_jobs(&self) -> Option<bool> {
+        let queue = self.command("squeue").args(["-h"]).output().ok()?;
+        queue.status.success().then_some(queue.stdout.is_empty())
     }
 }
 
@@ -183,6 +185,11 @@ impl Drop for Cluster {
             .command("scancel")
             .args(["--user=root", "--signal=KILL"])
             .status();
+        // A step that finds no daemon to tell its end to would wait for one for ever.
+        let end = Instant::now() + Duration::from_secs(10);
+        while Instant::now() < end && self.has_no_jobs() == Some(false) {
+            thread::sleep(Duration::from_millis(50));
+        }
         for daemon in self.daemons.iter_mut().rev() {
             // One that has ended by itself is as good.
             let _ = daemon.kill();

@@ -69,6 +69,17 @@ fn parts_are_joined_into_the_same_file() {
     }
 }
 
+/// The values of an EXR are the CPU's: it is not advised what parts cannot have.
+#[test]
+fn parts_with_values_are_made_without_a_word() {
+    let desk = Desk::new();
+    let made = desk
+        .run(&["render", "room.txt", "-o", "a.exr", "--part", "1/3"])
+        .ends(0);
+    assert!(!made.stderr.contains("--precision"), "{}", made.stderr);
+    assert_eq!(made.stderr.lines().count(), 1, "{}", made.stderr);
+}
+
 /// Stdout and devices get nothing before all is known to be right.
 #[test]
 fn streams_get_a_picture_that_is_right_or_nothing() {
@@ -205,18 +216,25 @@ fn what_is_missing_is_listed() {
     }
     let told = desk.run(&["join", "a.ppm"]).ends(1);
     assert_eq!(told.text(), "3-4,6-16,18-19\n");
-    assert!(
-        !desk.path("a.ppm").exists() && told.stderr.contains("is not made"),
-        "{}",
-        told.stderr
+    assert!(!desk.path("a.ppm").exists());
+    let last = |told: &Ran| told.stderr.lines().last().unwrap().to_owned();
+    assert_eq!(
+        last(&told),
+        "plumb: a.ppm is not made: 15 parts are to be made, of 20"
     );
+    // Who only asks wants no picture.
+    let told = desk.run(&["join", "a.ppm", "--check"]).ends(1);
+    assert_eq!(last(&told), "plumb: 15 parts are to be made, of 20");
     // Parts of another cut beside them.
     part(&desk, "room.txt", "a.ppm", "1/2", &[]);
     desk.run(&["join", "a.ppm"])
         .fails_with(&["into 2 and 20 parts", "--parts"]);
-    assert_eq!(
-        desk.run(&["join", "a.ppm", "--parts", "2"]).ends(1).text(),
-        "2\n"
+    let told = desk.run(&["join", "a.ppm", "--parts", "2"]).ends(1);
+    assert_eq!(told.text(), "2\n");
+    assert!(
+        told.stderr.contains("this part is not in a.ppm.parts: 2\n"),
+        "{}",
+        told.stderr
     );
     // Bytes are no values.
     part(&desk, "room.txt", "a.ppm", "2/2", &[]);
@@ -249,9 +267,19 @@ fn what_parts_cannot_have_is_refused() {
             &["--part", "1/3", "--parts-in", "room.txt"],
             &["cannot make the folder"],
         ),
+        // On a node where a disk is missing, parts must not be made elsewhere.
+        (
+            &["--part", "1/3", "--parts-in", "nowhere/parts"],
+            &["the folder nowhere does not exist"],
+        ),
     ] {
         render(options).fails_with(words);
     }
+    desk.run(&["render", "room.txt", "-o", "nowhere/a.png", "--part", "1/3"])
+        .fails_with(&[
+            "cannot make the folder",
+            "the folder nowhere does not exist",
+        ]);
     desk.run(&["render", "room.txt", "-o", "-", "--part", "1/2"])
         .fails_with(&["give one with -o"]);
     assert_eq!(desk.names(), ["room.txt"]);

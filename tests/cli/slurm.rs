@@ -187,8 +187,10 @@ fn a_cluster_makes_the_same_file_whatever_happens() {
     assert!(told.starts_with("nothing is missing"), "{told}");
     fs::rename(desk.path("kept"), desk.path("big.png.parts")).unwrap();
 
-    // A task that fails goes back into the queue, where it is asked for.
+    // A task that fails goes back into the queue, where it is asked for, and it alone: the last one's number is the
+    // array's.
     fs::remove_file(desk.path("mended")).unwrap();
+    fs::remove_file(site.part(5)).unwrap();
     fs::remove_file(site.part(9)).unwrap();
     desk.write(
         "big.sh",
@@ -200,17 +202,21 @@ fn a_cluster_makes_the_same_file_whatever_happens() {
             .as_str(),
     )
     .ends(0);
-    let shown = "scontrol show job -o | grep -c 'ArrayTaskId=9 .*Restarts=1 '";
+    let jobs = || site.shell("scontrol show job -o").text();
+    let restarts = |task: u32, restarts: u32| {
+        let (task, restarts) = (
+            format!(" ArrayTaskId={task} "),
+            format!(" Restarts={restarts} "),
+        );
+        let of_task = |line: &&str| line.contains(&task) && line.contains(&restarts);
+        jobs().lines().filter(of_task).count()
+    };
     let queued = (0..100).any(|_| {
         std::thread::sleep(std::time::Duration::from_millis(100));
-        site.shell(shown).text() == "1\n"
+        restarts(9, 1) == 1
     });
-    assert!(
-        queued,
-        "{}{}",
-        site.shell("scontrol show job -o").text(),
-        site.logs()
-    );
+    assert!(queued, "{}{}", jobs(), site.logs());
+    assert_eq!(restarts(5, 1), 0, "{}{}", jobs(), site.logs());
     site.shell("scancel --user=root").ends(0);
 }
 
@@ -237,6 +243,8 @@ fn a_cluster_makes_frames() {
         "--backend",
         "cpu",
         "--submit",
+        "--",
+        "--export=NONE",
     ];
     let mut command = desk.command(&[&["slurm"][..], &scenes, &options].concat());
     site.cluster.known_to(&mut command);
@@ -258,7 +266,120 @@ fn a_cluster_makes_frames() {
     );
     fs::remove_file(desk.path("a film/$four.ppm")).unwrap();
     let told = site.shell("bash frames.sh missing").ends(0).text();
-    assert!(told.starts_with("tasks 1: job "), "{told}");
+    assert!(
+        told.starts_with("missing: a film/$four.ppm\ntasks 1: job "),
+        "{told}"
+    );
     site.cluster.settle();
     assert!(desk.path("a film/$four.ppm").exists(), "{}", site.logs());
+    // The same task has another picture, which was there.
+    assert_eq!(
+        site.logs().matches("a film/it's one.ppm: ").count(),
+        1,
+        "{}",
+        site.logs()
+    );
+}
+
+/// A task that fails goes back into the queue, and it alone: by its own number in the array, as the job's number may be
+/// that of all. So does one of a node that does not see the folder, which would take all tasks otherwise.
+#[test]
+fn a_task_that_fails_is_put_back_alone() {
+    let desk = Desk::new();
+    fs::create_dir(desk.path("bin")).unwrap();
+    desk.write("bin/scontrol", "#!/bin/sh\necho \"$@\"\n");
+    let scontrol = desk.path("bin/scontrol");
+    fs::set_permissions(scontrol, fs::Permissions::from_mode(0o755)).unwrap();
+    let task = |script: &str, restarts: &str| {
+        let mut shell = Command::new("bash");
+        shell.args(["-c", script]);
+        shell.env(
+            "PATH",
+            format!("{}:/usr/bin:/bin", desk.path("bin").display()),
+        );
+        let slurm = ["JOB_ID", "ARRAY_JOB_ID", "ARRAY_TASK_ID", "RESTART_COUNT"];
+        for (name, value) in slurm.iter().zip(["7", "7", "2", restarts]) {
+            shell.env(format!("SLURM_{name}"), value);
+        }
+        Ran::new(&["task"], shell.output().unwrap())
+    };
+    let here = format!("cd {} ||", desk.folder.path().display());
+    desk.write("other.txt", super::desk::ROOM);
+    for what in [
+        &["room.txt", "-o", "a.png", "--parts", "2"][..],
+        &["other.txt", "room.txt", "-o", "{}.png", "--frames"],
+    ] {
+        let args = [&["slurm"][..], what, &["--backend", "cpu"]].concat();
+        let script = desk.run(&args).ends(0).text();
+        assert_eq!(task(&script, "0").ends(0).text(), "");
+        let lost = script.replace(&here, "cd /nowhere ||");
+        assert_ne!(lost, script);
+        let failed = script.replace("room.txt", "gone.txt");
+        for script in [lost, failed] {
+            assert_eq!(task(&script, "1").ends(2).text(), "requeue 7_2\n");
+            // Two more tries are enough.
+            assert_eq!(task(&script, "2").ends(2).text(), "");
+        }
+    }
+}
+
+/// What would fail on every node fails before anything is submitted; what sbatch refuses is told as that.
+#[test]
+fn what_cannot_be_is_told_at_once() {
+    let desk = Desk::new();
+    let slurm = |more: &[&str]| desk.run(&[&["slurm", "room.txt"][..], more].concat());
+    slurm(&["-o", "nowhere/a.png", "--parts", "2"])
+        .fails_with(&["the folder nowhere does not exist"]);
+    slurm(&["-o", "a.png", "--parts", "2", "--parts-in", "nowhere/parts"])
+        .fails_with(&["the folder nowhere does not exist"]);
+    slurm(&["-o", "nowhere/{}.png", "--frames"]).fails_with(&["the folder nowhere does not exist"]);
+    slurm(&["-o", "a.png", "--frames"]).fails_with(&["'film/{}.png'"]);
+    // Pictures are named as `plumb render` names them.
+    fs::create_dir(desk.path("film")).unwrap();
+    for (output, named) in [("film/b-{}.png", "b-room.png"), ("film", "room.ppm")] {
+        let picture = slurm(&["-o", output, "--parts", "2"]).ends(0).text();
+        for line in [
+            format!("picture=./film/{named}\n"),
+            format!("folder=film/{named}.parts\n"),
+        ] {
+            assert!(picture.contains(&line), "{line}{picture}");
+        }
+        let film = slurm(&["-o", output, "--frames"]).ends(0).text();
+        let line = format!("pictures=(\nfilm/{named}\n)");
+        assert!(film.contains(&line), "{line}{film}");
+        assert!(film.contains(&format!("--output={output}")), "{film}");
+    }
+    let told = slurm(&["-o", "a.exr", "--parts", "2", "--gpus-per-task", "1"]).ends(0);
+    assert!(
+        told.stderr.contains("GPUs will have nothing to do"),
+        "{}",
+        told.stderr
+    );
+
+    fs::create_dir(desk.path("bin")).unwrap();
+    let sbatch = |text: &str| {
+        desk.write("bin/sbatch", text);
+        let path = desk.path("bin/sbatch");
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    let submit = |parts: &str| {
+        let args = ["slurm", "room.txt", "-o", "a.png", "--submit", "--parts"];
+        let mut command = desk.command(&[&args[..], &[parts]].concat());
+        command.env(
+            "PATH",
+            format!("{}:/usr/bin:/bin", desk.path("bin").display()),
+        );
+        Ran::new(&args, command.output().unwrap())
+    };
+    sbatch("#!/bin/sh\necho no such partition >&2\nexit 1\n");
+    let refused = submit("2").ends(2).stderr;
+    assert!(refused.contains("refused an option"), "{refused}");
+    assert!(!refused.contains("missing"), "{refused}");
+    sbatch("#!/bin/sh\necho 7\n");
+    let told = submit("2").ends(0).stderr;
+    assert!(told.contains("the script is a.sh\n"), "{told}");
+    assert!(told.contains("`bash a.sh missing`"), "{told}");
+    // Another picture may have had a script of that name.
+    let told = submit("3").ends(0).stderr;
+    assert!(told.contains("in place of another one"), "{told}");
 }

@@ -77,6 +77,10 @@ impl<'a> Picture<'a> {
         command.check(&target)?;
         let [width, height] = scene.camera.pixeldim;
         let mut settings = options.settings(scene, format.wants_values())?;
+        if settings.values && settings.backend == Backend::Auto {
+            // It computes them in any case, and what might be advised for a whole picture is none for parts.
+            settings.backend = Backend::Cpu;
+        }
         // What is presumed is counted part by part.
         settings.verdicts = true;
         let rows = settings.rows_of(height);

@@ -35,6 +35,14 @@ pub(super) enum What {
     },
 }
 
+impl What {
+    /// The picture, or what names them all.
+    pub(super) fn output(&self) -> &Path {
+        let (Self::Parts { output, .. } | Self::Frames { output, .. }) = self;
+        output
+    }
+}
+
 /// A job script.
 pub(super) struct Script {
     /// The job's name.
@@ -75,9 +83,9 @@ impl Script {
         let mut text = self.head();
         let mut add = |more: &[u8]| text.extend(more);
         let word = |path: &OsStr| quoted(path);
-        add(b"script=$(realpath \"$0\")\ncd ");
+        add(b"script=$(realpath \"$0\")\ncode=0\ncd ");
         add(&word(self.folder.as_os_str()));
-        add(b" || exit 2\nplumb=");
+        add(b" || code=2\nplumb=");
         add(&word(self.plumb.as_os_str()));
         add(format!("\nat_once={}\n", self.at_once()).as_bytes());
         add(b"# For the job that joins, and for nothing else: the lines above are for the tasks.\noptions=(");
@@ -120,19 +128,26 @@ impl Script {
             text.extend(quoted(option));
             text.push(b'\n');
         }
-        let what = match self.what {
-            What::Parts { parts, .. } => format!("a picture in {parts} parts, and then joined"),
+        let (what, missing) = match self.what {
+            What::Parts { parts, .. } => (
+                format!("a picture in {parts} parts, and then joined"),
+                "missing or damaged",
+            ),
             What::Frames {
                 ref pictures,
                 tasks,
                 ..
-            } => format!("{} pictures, by {tasks} tasks", pictures.len()),
+            } => (
+                format!("{} pictures, by {tasks} tasks", pictures.len()),
+                "missing",
+            ),
         };
         // Where writing into a text fails there is no memory either.
         let _ = write!(
             text,
-            "#\n{OURS} ({SOFTWARE}): {what}. docs/CLUSTER.md tells more.\n#\n#   bash THIS            submits all of it\n#   \
-             bash THIS missing    submits what is missing or damaged, and nothing else\n\n"
+            "#\n{OURS} ({SOFTWARE}): {what}. docs/CLUSTER.md tells more.\n#\n\
+             #   bash THIS            submits all of it\n\
+             #   bash THIS missing    when it has ended, submits what is {missing}, and nothing else\n\n"
         );
         text
     }
@@ -153,10 +168,12 @@ impl Script {
         format!(
             r#"    # 1 is an answer, not a failure. Another try may be on another node.
     if [ "$code" -gt 1 ] && [ "${{SLURM_RESTART_COUNT:-0}}" -lt {retries} ]; then
-        scontrol requeue "$SLURM_JOB_ID"
+        # The last task's own job number is that of the whole array.
+        scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
     fi
     exit "$code"
 fi
+[ "$code" = 0 ] || exit "$code"
 "#
         )
     }
@@ -188,7 +205,8 @@ fi
         ];
         let mut text = Vec::new();
         let mut add = |more: &[u8]| text.extend(more);
-        add(b"if [ -n \"${SLURM_ARRAY_TASK_ID-}\" ]; then\n    code=0\n    \"$plumb\" render ");
+        add(TASK.as_bytes());
+        add(b"    [ \"$code\" != 0 ] || \"$plumb\" render ");
         add(&quoted(scene.as_os_str()));
         add(b" -o ");
         add(&quoted(&joined));
@@ -220,7 +238,8 @@ fi
         let mut add = |more: &[u8]| text.extend(more);
         let mut option = OsString::from("--output=");
         option.push(output);
-        add(RENDER_FRAMES);
+        add(TASK.as_bytes());
+        add(RENDER_FRAMES.as_bytes());
         add(&quoted(&option));
         add(b" ");
         add(&self.render_options());
@@ -276,16 +295,17 @@ job=$(sbatch --parsable --job-name=join "${options[@]}" "${after[@]}" --requeue 
 echo "the picture: job ${job%%;*}, behind them"
 "#;
 
+/// Begins what Slurm runs. A node that does not see the folder must not take all tasks: they go back into the queue.
+const TASK: &str = "if [ -n \"${SLURM_ARRAY_TASK_ID-}\" ]; then\n";
+
 /// Renders the frames of a task, all in one run, which opens a device and compiles a shader once.
-const RENDER_FRAMES: &[u8] = br#"if [ -n "${SLURM_ARRAY_TASK_ID-}" ]; then
-    code=0
-    mine=()
+const RENDER_FRAMES: &str = r#"    mine=()
     for ((i = SLURM_ARRAY_TASK_ID - 1; i < ${#scenes[@]}; i += tasks)); do
-        if [ -z "${PLUMB_MISSING-}" ] || [ ! -e "${pictures[i]}" ]; then
+        if [ "${1-}" != missing ] || [ ! -e "${pictures[i]}" ]; then
             mine+=("${scenes[i]}")
         fi
     done
-    if [ "${#mine[@]}" -gt 0 ]; then
+    if [ "$code" = 0 ] && [ "${#mine[@]}" -gt 0 ]; then
         "$plumb" render "${mine[@]}" "#;
 
 /// Submits frames.
@@ -295,15 +315,18 @@ array=1-$tasks
 if [ "${1-}" = missing ]; then
     declare -A wanted=()
     for i in "${!pictures[@]}"; do
-        [ -e "${pictures[i]}" ] || wanted[$((i % tasks + 1))]=1
+        if [ ! -e "${pictures[i]}" ]; then
+            wanted[$((i % tasks + 1))]=1
+            echo "missing: ${pictures[i]}"
+        fi
     done
     if [ "${#wanted[@]}" = 0 ]; then
         echo "no picture is missing"
         exit
     fi
     array=$(printf '%s\n' "${!wanted[@]}" | sort -n | paste -sd,)
-    export PLUMB_MISSING=1
 fi
-job=$(sbatch --parsable --array="$array$at_once" "$script")
+# The tasks take the word as well: what is exported here does not always reach them (sbatch --export=NONE).
+job=$(sbatch --parsable --array="$array$at_once" "$script" "$@")
 echo "tasks $array: job ${job%%;*}"
 "#;
