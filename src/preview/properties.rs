@@ -131,8 +131,8 @@ fn attribute(
     }
 }
 
-/// Numbers to begin with for what may be left out: a direction along an axis; a place in the middle of the screen, or as
-/// far from another place of the entity as the screen is wide, below or above it, where nothing else is allowed.
+/// Numbers to begin with for what may be left out: a direction along an axis; a place in the middle of the screen, or,
+/// where that is not allowed, as far below or above another place of the entity as the screen is wide.
 fn beginning(session: &Session, scene: &Scene, target: Target, row: &NumberRow) -> Option<Value> {
     let width = scene.camera.worlddim.x;
     let middle = (scene.camera.worlddim / 2.0).extend(0.0);

@@ -21,8 +21,8 @@ light lamp { location 4.0 3 -2  emissivity 3 3 3 }   # in the middle
 spotlight spot { location 2 3.0 -2  emissivity 3 0 0  point 2 4 -6  theta 20 }
 ";
 
-/// Where the handles are in its picture: 319 pixels are 8 units, 239 are 6, and what lies behind the screen is nearer to
-/// the middle.
+/// Where the handles are in its picture: 319 pixels are 8 units, 239 are 6, and what lies behind the screen is nearer
+/// to the middle.
 const LAMP: (i32, i32) = (160, 120);
 const SPOT: (i32, i32) = (100, 120);
 const AIM: (i32, i32) = (120, 100);
