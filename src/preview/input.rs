@@ -10,7 +10,7 @@ use eframe::egui::{Event, Key};
 
 /// Where more events than so many wait, more is done than frames can follow: all of them are one frame's then, since a
 /// window that lags behind is worse than a click that is elsewhere.
-const MOST: usize = 48;
+const MOST: usize = 256;
 
 /// What an event is to the order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
