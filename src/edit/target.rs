@@ -17,7 +17,7 @@ pub struct Target {
     attribute: &'static str,
 }
 
-/// What an attribute is changed to: its numbers, as many as it has.
+/// What an attribute is changed to: its numbers, as many as it has, or none where it is left out.
 #[derive(Clone, Copy)]
 pub struct Value {
     numbers: [f64; MOST_NUMBERS],
@@ -25,6 +25,12 @@ pub struct Value {
 }
 
 impl Value {
+    /// What an attribute has that is not given, where that means something else than zero.
+    pub const LEFT_OUT: Self = Self {
+        numbers: [0.0; MOST_NUMBERS],
+        count: 0,
+    };
+
     /// These numbers; nothing where they are more than any attribute has.
     pub fn new(numbers: &[f64]) -> Option<Self> {
         let mut all = [0.0; MOST_NUMBERS];
@@ -115,8 +121,7 @@ impl Target {
         self.attribute
     }
 
-    /// The value that a scene has there; nothing where it has no such entity, or that has no such attribute, or the
-    /// attribute was left out and that means something else than zero.
+    /// The value that a scene has there; nothing where it has no such entity, or that has no such attribute.
     pub fn value_in(self, scene: &Scene) -> Option<Value> {
         Value::new(&scene::numbers_of(scene, self.entity, self.attribute)?)
     }

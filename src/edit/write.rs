@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::changes::Changes;
 use super::spell;
-use super::target::Target;
+use super::target::{Target, Value};
 use crate::diagnostic::Diagnostics;
 use crate::scene::{
     EntityId, Given, MAX_FILE, Place, Scene, number_at, number_rows, parse_text, places,
@@ -46,8 +46,9 @@ impl Changes {
     /// makes of the scene of `text`, to the last bit.
     ///
     /// Only numbers whose value changes are exchanged. Where an attribute is not given, it is added to the block in the
-    /// layout of its neighbours; where `specular` is one number for all three and they come to differ, it becomes
-    /// three. Everything else, comments, order and the ends of lines, stays byte for byte. Textures are not read.
+    /// layout of its neighbours, and one that is left out is removed as if it had been added; where `specular` is one
+    /// number for all three and they come to differ, it becomes three. Everything else, comments, order and the ends of
+    /// lines, stays byte for byte, but for comments between the numbers of what is removed. Textures are not read.
     ///
     /// # Errors
     /// When the text has mistakes, or has not what is changed, or would become too large.
@@ -65,6 +66,9 @@ impl Changes {
             }
             let place = places.of(text, target.entity()).ok_or_else(missing)?;
             match place.given(target.attribute()) {
+                Some(given) if value == Value::LEFT_OUT => {
+                    edits.push(remove(text, &place, given));
+                }
                 Some(given) => respell(text, given, value.numbers(), &mut edits),
                 // It has a value, so it is one that may be left out.
                 None => {
@@ -73,8 +77,8 @@ impl Changes {
                 }
             }
         }
-        // Several that are added in one place stay in their order.
-        edits.sort_by_key(|edit| edit.place.start);
+        // Several that are added in one place stay in their order, before what is removed behind it.
+        edits.sort_by_key(|edit| (edit.place.start, edit.place.end));
         exchange(text, &edits, MAX_FILE).ok_or(EditError::TooLarge)
     }
 }
@@ -192,6 +196,31 @@ fn add(text: &[u8], place: &Place, names: &[&'static str], values: &[f64]) -> Op
         place: at..at,
         bytes,
     })
+}
+
+/// Removes an attribute from its block, and with it what [`add`] would have put before it: the end of the line before,
+/// or blanks. Where a comment stands there, the comment's line stays as it is.
+fn remove(text: &[u8], place: &Place, given: &Given) -> Edit {
+    let end = last_byte(given);
+    // If the block's end came behind a comment on the line before, it would be part of that.
+    let line_end = text[end..place.close].iter().position(is_break);
+    let is_alone = line_end.is_some_and(|length| text[end..end + length].iter().all(is_blank));
+    let start = match line_of(text, place, given) {
+        Some(line) if is_alone => {
+            let before = &text[..line.start];
+            line.start - if before.ends_with(b"\r\n") { 2 } else { 1 }
+        }
+        Some(_) => given.key.start,
+        None => {
+            let before = text[place.open..given.key.start].iter();
+            let blanks = before.rev().take_while(|byte| is_blank(byte)).count();
+            given.key.start - blanks
+        }
+    };
+    Edit {
+        place: start..end,
+        bytes: Vec::new(),
+    }
 }
 
 /// An attribute as it is written.

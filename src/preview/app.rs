@@ -1,29 +1,33 @@
 //! The window: brings together the file, the pictures, the panels, and what the user does.
 //!
 //! Here are its parts, and a frame; `doing` has what keys and panels ask for, `hands` what the mouse does on the
-//! picture, `asking` what is wanted to be known of it, `leaving` what is asked before the window closes.
+//! picture, `asking` what is wanted to be known of it, `opening` how another scene comes, `leaving` what is asked
+//! before the window closes; `events` has what other threads tell, `telling` what the user is told.
 
 mod asking;
 mod doing;
+mod events;
 mod hands;
 mod leaving;
 mod opening;
+mod telling;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use eframe::egui::{self, Context, Rect, Ui};
 
 use super::canvases::Canvases;
-use super::chooser::{Chooser, Purpose};
+use super::chooser::Chooser;
 use super::draw::ObjectMap;
 use super::handles::Grabbed;
 use super::hints::Hints;
-use super::inspect::{Answer, Inspector};
+use super::input::Waiting;
+use super::inspect::Inspector;
 use super::inspector::Panel;
 use super::keys::Command;
 use super::overlay::{self, Chosen, SaveAs};
@@ -32,51 +36,18 @@ use super::panels::Panels;
 use super::picture::{self, Showing};
 use super::recent::Recent;
 use super::rendering::Rendering;
+use super::scene_watch::SceneWatch;
 use super::screen;
-use super::session::{self, Session};
+use super::session::Session;
 use super::shared_session::SharedSession;
 use super::side::{self, Side};
 use super::start;
-use super::status::{self, Line};
-use super::watch::SceneWatch;
-use super::worker::{self, PreviewPicture, Worker};
+use super::worker::{PreviewPicture, Worker};
 use super::{Devices, Options, inspector, legend};
 use crate::gpu::device::Gpu;
 use crate::scene::EntityId;
+use events::{Event, Teller};
 use leaving::Leaving;
-
-/// What is said stays in the status line for so long.
-const SAID: Duration = Duration::from_secs(12);
-
-/// Figures that change are drawn anew so often.
-const FIGURES: Duration = Duration::from_millis(250);
-
-/// What other threads tell the window.
-enum Event {
-    /// Something is to be said, or to be shown of the file.
-    File,
-    Rendered(worker::News),
-    Inspected(Answer),
-    Saved(Result<String, String>),
-    /// What the desktop's file dialog gave.
-    Browsed(Purpose, Option<PathBuf>),
-}
-
-/// Tells the window, and wakes it.
-#[derive(Clone)]
-struct Teller {
-    events: Sender<Event>,
-    context: Context,
-}
-
-impl Teller {
-    fn tell(&self, event: Event) {
-        // A window that is closed has nobody to tell.
-        if self.events.send(event).is_ok() {
-            self.context.request_repaint();
-        }
-    }
-}
 
 /// The window.
 pub(super) struct App {
@@ -116,6 +87,8 @@ pub(super) struct App {
     clicked: Option<[u32; 2]>,
     /// The handle that is dragged.
     grabbed: Option<Grabbed>,
+    /// What the user did that is not this frame's.
+    waiting: Waiting,
     /// How often a button of the mouse was pressed.
     presses: u64,
     area: Option<Rect>,
@@ -139,16 +112,17 @@ impl App {
     /// Sets the window up on its device, and begins to watch, read and render.
     pub(super) fn new(
         creation: &eframe::CreationContext<'_>,
-        Devices { gpu, window }: Devices,
+        devices: Devices,
         options: Options,
     ) -> anyhow::Result<Self> {
         let state = creation.wgpu_render_state.as_ref();
         let state = state.ok_or_else(|| anyhow::anyhow!("egui does not draw with wgpu"))?;
-        if Arc::ptr_eq(&gpu, &window) {
+        if devices.are_one() {
             screen::install(state);
         } else {
             painter::install(state, &creation.egui_ctx);
         }
+        let Devices { gpu, window } = devices;
         window.check()?;
         let (sender, events) = mpsc::channel();
         let teller = Teller {
@@ -200,6 +174,7 @@ impl App {
             over: None,
             clicked: None,
             grabbed: None,
+            waiting: Waiting::default(),
             presses: 0,
             area: None,
             help_open: false,
@@ -216,144 +191,6 @@ impl App {
             app.turn_to(path);
         }
         Ok(app)
-    }
-
-    fn say(&mut self, text: impl Into<String>) {
-        self.said = Some((text.into(), Instant::now()));
-    }
-
-    /// Takes what other threads tell.
-    fn listen(&mut self) {
-        while let Ok(event) = self.events.try_recv() {
-            match event {
-                Event::File => {}
-                Event::Rendered(worker::News::Picture(picture)) if picture.number <= self.since => {
-                }
-                Event::Rendered(worker::News::Picture(picture)) => {
-                    self.failed = None;
-                    self.came.push(Instant::now());
-                    log::info!(
-                        "{} after {:.1} ms: {}",
-                        status::kind(&picture),
-                        1e3 * picture.seconds,
-                        status::figures(&picture)
-                    );
-                    self.picture = Some(*picture);
-                }
-                Event::Rendered(worker::News::Failed { number, why }) => {
-                    if number == self.shared.lock().wished && number > self.since {
-                        self.failed = Some(why);
-                    }
-                }
-                Event::Browsed(purpose, path) => self.browsed(purpose, path),
-                Event::Inspected(answer) => self.answered(answer),
-                Event::Saved(saved) => {
-                    if saved.is_err() {
-                        // There is something to be read first.
-                        self.leaving.stop_saving();
-                    }
-                    let (Ok(text) | Err(text)) = saved;
-                    self.say(text);
-                }
-            }
-        }
-        let said = std::mem::take(&mut self.shared.lock().session.said);
-        said.into_iter().for_each(|text| self.say(text));
-    }
-
-    /// Pictures a second, while they come one after the other.
-    fn frames(&mut self) -> Option<f64> {
-        let now = Instant::now();
-        self.came
-            .retain(|came| now - *came < Duration::from_secs(1));
-        let (first, last) = (*self.came.first()?, *self.came.last()?);
-        let count = self.came.len();
-        (count > 4 && now - last < Duration::from_millis(300))
-            .then(|| (count - 1) as f64 / (last - first).as_secs_f64())
-    }
-
-    fn set_title(&mut self, context: &Context) {
-        let kind = self.picture.as_ref().map(status::kind).unwrap_or_default();
-        let state = self.shared.lock();
-        let session = &state.session;
-        let star = if session.unsaved().is_empty() {
-            ""
-        } else {
-            "*"
-        };
-        let mut title = match session.name() {
-            name if name.is_empty() => "plumb".to_owned(),
-            name => format!("{name}{star} – plumb"),
-        };
-        if let Some(trouble) = &session.trouble {
-            title.push_str(match trouble {
-                session::Trouble::Mistakes(it) if it.count > 1 => " – mistakes",
-                session::Trouble::Mistakes(_) => " – mistake",
-                session::Trouble::Gone => " – gone",
-                session::Trouble::Unreadable(_) => " – cannot be read",
-            });
-        } else if !kind.is_empty() {
-            title.push_str(&format!(" – {kind}"));
-        }
-        drop(state);
-        if title != self.title {
-            context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.title = title;
-        }
-    }
-
-    fn status(&mut self, ui: &mut Ui) {
-        let frames = self.frames();
-        let said = self.said.as_ref().filter(|(_, when)| when.elapsed() < SAID);
-        let picture = self.picture.as_ref();
-        let state = self.shared.lock();
-        let rendering = state.session.rendering().options();
-        let trouble = state.session.trouble.is_some();
-        drop(state);
-        let size = picture.map_or([1, 1], |picture| picture.scene.camera.pixeldim);
-        let scale = f64::from(ui.ctx().pixels_per_point());
-        let placed = self.area.map(|rect| {
-            self.showing
-                .viewport
-                .place(picture::area(rect, scale), size)
-        });
-        let line = Line {
-            doing: self.doing(),
-            zoom: placed.map_or(1.0, |placed| placed.zoom),
-            frames,
-            pixel: self.over.and_then(|pixel| {
-                let bytes = picture.and_then(|picture| picture::bytes(picture, pixel));
-                Some((pixel, bytes?))
-            }),
-            rendering,
-            trouble,
-            said: said.map(|(text, _)| text.clone()),
-        };
-        if line.doing.is_some() || frames.is_some() || said.is_some() {
-            // The line is drawn again soon, so that its figures do not stand still.
-            ui.ctx().request_repaint_after(FIGURES);
-        }
-        if status::show(ui, picture, &line) {
-            self.help_open = true;
-        }
-    }
-
-    /// What is being done, if anything.
-    fn doing(&self) -> Option<String> {
-        self.options.path.as_ref()?;
-        let state = self.shared.lock();
-        if state.wished == 0 {
-            // Nothing is wished for while there is no scene; what is wrong with the file is said elsewhere.
-            return state
-                .session
-                .trouble
-                .is_none()
-                .then(|| "reading the scene".into());
-        }
-        let shown = self.picture.as_ref().map(|picture| picture.number);
-        let behind = shown != Some(state.wished) && self.failed.is_none();
-        let words = self.worker.progress.doing().words();
-        words.or_else(|| behind.then(|| "rendering next".into()))
     }
 
     fn middle(&mut self, ui: &mut Ui) {
@@ -406,6 +243,13 @@ impl App {
 }
 
 impl eframe::App for App {
+    fn raw_input_hook(&mut self, context: &Context, input: &mut egui::RawInput) {
+        self.waiting.take_turns(&mut input.events);
+        if !self.waiting.is_empty() {
+            context.request_repaint();
+        }
+    }
+
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         self.listen();
         self.set_title(context);

@@ -1,6 +1,6 @@
 //! Brings a texture as large as the window into the window: what was drawn once is copied in every frame.
 
-use eframe::egui_wgpu::{RenderState, wgpu};
+use eframe::egui_wgpu::wgpu;
 
 /// What is drawn is bytes, whatever the window's surface is made of.
 pub(super) const DRAWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -25,14 +25,9 @@ impl Drawn {
 
 impl Blit {
     /// Compiles the shader for the window's surface.
-    pub(super) fn new(state: &RenderState) -> Self {
-        let entry = if state.target_format.is_srgb() {
-            "linear"
-        } else {
-            "bytes"
-        };
+    pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let wgsl = String::from(include_str!("blit.wgsl"));
-        let pipeline = pipeline(&state.device, "blit", wgsl, entry, state.target_format);
+        let pipeline = pipeline(device, "blit", wgsl, entry(format), format);
         Self { pipeline }
     }
 
@@ -49,6 +44,7 @@ impl Blit {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: DRAWN,
+            // The device draws into it, or it is given what the host drew.
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                 | wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::COPY_DST,
@@ -72,6 +68,11 @@ impl Blit {
         pass.set_bind_group(0, &drawn.bound, &[]);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// What writes bytes into a surface of this format, so that they are shown as they are.
+fn entry(format: wgpu::TextureFormat) -> &'static str {
+    if format.is_srgb() { "linear" } else { "bytes" }
 }
 
 /// A pipeline without vertices that draws a triangle over everything.

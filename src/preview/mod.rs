@@ -11,13 +11,16 @@
 
 mod adaptive_resolution;
 mod app;
+mod arenas;
 mod blit;
 mod canvases;
 mod chooser;
 mod display;
 mod draw;
+mod entities;
 mod handles;
 mod hints;
+mod input;
 mod inspect;
 mod inspector;
 mod keys;
@@ -33,6 +36,7 @@ mod properties;
 mod recent;
 mod rendering;
 mod save;
+mod scene_watch;
 mod screen;
 mod selection;
 mod session;
@@ -44,6 +48,7 @@ mod status;
 mod undo;
 mod values;
 mod viewport;
+mod wanted;
 mod watch;
 mod worker;
 
@@ -109,6 +114,7 @@ pub enum PreviewError {
 /// # Errors
 /// Any [`PreviewError`].
 pub fn run(options: Options) -> Result<(), PreviewError> {
+    arenas::share();
     let (gpu, drawn_with) = open(options.settings.adapter.as_deref())?;
     let window = drawn_with.gpu;
     let setup = egui_wgpu::WgpuSetupExisting {
@@ -192,6 +198,13 @@ struct Devices {
     gpu: Arc<Gpu>,
     /// Draws the window; perhaps the same.
     window: Arc<Gpu>,
+}
+
+impl Devices {
+    /// Whether one does both; else the host draws the window, and the device copies it there.
+    fn are_one(&self) -> bool {
+        Arc::ptr_eq(&self.gpu, &self.window)
+    }
 }
 
 /// The device that renders, and that which draws the window.

@@ -100,7 +100,7 @@ struct HostPainter {
 /// Paints the window on the host from now on.
 pub(super) fn install(state: &RenderState, context: &Context) {
     state.renderer.write().callback_resources.insert(Copied {
-        blit: Blit::new(state),
+        blit: Blit::new(&state.device, state.target_format),
         drawn: None,
     });
     context.add_plugin(HostPainter::default());
@@ -281,4 +281,15 @@ fn upload(queue: &wgpu::Queue, texture: &wgpu::Texture, frame: &Frame, part: Par
             depth_or_array_layers: 1,
         },
     );
+}
+
+/// The pixels of the part of a window that a picture covers, as the host draws it.
+#[cfg(test)]
+pub(super) fn drawn(draw: &Draw, window: [u32; 2]) -> Vec<u32> {
+    let [left, top, width, height] = draw.covers(window);
+    let covered = Part {
+        from: [left, top],
+        to: [left + width, top + height],
+    };
+    picture::drawn(draw, covered)
 }

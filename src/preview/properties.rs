@@ -2,10 +2,11 @@
 //! and units. So whatever an entity has can be changed, and what is changed is marked.
 
 use eframe::egui::{self, Ui};
+use glam::DVec3;
 
 use super::session::Session;
-use super::side::Wanted;
 use super::values::{neat, short};
+use super::wanted::Wanted;
 use crate::edit::{Target, Value};
 use crate::scene::{self, Bounds, EntityId, NumberRow, Quantity, Scene};
 
@@ -79,6 +80,7 @@ fn attribute(
     row: &NumberRow,
     wanted: &mut Vec<Wanted>,
 ) {
+    let set = |value| Wanted::Set(target, value);
     let fixed = session.is_fixed(target);
     let value = match fixed {
         Some(_) => session.value_in_file(target),
@@ -87,9 +89,16 @@ fn attribute(
     ui.horizontal(|ui| {
         let name = ui.label(row.name());
         name.on_hover_text(format!("{}: {}", row.name(), row.wording()));
-        if value.is_none() {
+        if value == Some(Value::LEFT_OUT) {
             ui.weak("not given");
-        } else if session.is_changed(target)
+            let add = ui.small_button("add");
+            if add.on_hover_text("numbers to begin with").clicked() {
+                wanted.extend(beginning(session, scene, target, row).map(set));
+            }
+        } else if row.may_be_left_out() && ui.small_button("leave out").clicked() {
+            wanted.push(set(Value::LEFT_OUT));
+        }
+        if session.is_changed(target)
             && ui
                 .small_button("reset")
                 .on_hover_text("as the file has it")
@@ -101,7 +110,7 @@ fn attribute(
             ui.weak(why);
         }
     });
-    let Some(value) = value else {
+    let Some(value) = value.filter(|value| *value != Value::LEFT_OUT) else {
         return;
     };
     let mut numbers = value.numbers().to_vec();
@@ -118,8 +127,30 @@ fn attribute(
         }
     });
     if changed.inner {
-        wanted.extend(Value::new(&numbers).map(|value| Wanted::Set(target, value)));
+        wanted.extend(Value::new(&numbers).map(set));
     }
+}
+
+/// Numbers to begin with for what may be left out: a direction along an axis; a place in the middle of the screen, or,
+/// where that is not allowed, as far below or above another place of the entity as the screen is wide.
+fn beginning(session: &Session, scene: &Scene, target: Target, row: &NumberRow) -> Option<Value> {
+    let width = scene.camera.worlddim.x;
+    let middle = (scene.camera.worlddim / 2.0).extend(0.0);
+    let candidates = match row.quantity() {
+        Quantity::Direction => DVec3::AXES.to_vec(),
+        _ => {
+            let others = scene::number_rows(scene, target.entity());
+            let others = others.filter(|other| other.quantity() == Quantity::Place);
+            let others =
+                others.filter_map(|it| session.value(Target::new(target.entity(), it.name())));
+            let aside = [-width, width].map(DVec3::splat);
+            let others = others.filter_map(|value| value.vector());
+            let others = others.flat_map(|place| aside.map(|by| place + by));
+            [middle].into_iter().chain(others).collect()
+        }
+    };
+    let mut candidates = candidates.into_iter().map(Value::from);
+    candidates.find(|value| session.allows(target, *value))
 }
 
 /// Numbers to be dragged or typed, three in a line.

@@ -79,26 +79,8 @@ pub(super) fn wgsl() -> String {
 
 /// Compiles the shaders for the window, and gives them to egui's renderer.
 pub(super) fn install(state: &RenderState) {
-    let device = &state.device;
-    let view = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("view"),
-        size: size_of::<ScreenUniforms>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let nothing = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("nothing"),
-        contents: &[0; 4],
-        usage: wgpu::BufferUsages::STORAGE,
-    });
-    state.renderer.write().callback_resources.insert(Screen {
-        pipeline: blit::pipeline(device, "screen", wgsl(), "color", blit::DRAWN),
-        blit: Blit::new(state),
-        view,
-        nothing,
-        seen: None,
-        last: None,
-    });
+    let screen = Screen::new(&state.device, state.target_format);
+    state.renderer.write().callback_resources.insert(screen);
 }
 
 /// A buffer of these words for the shader to read.
@@ -111,6 +93,29 @@ fn buffer(device: &wgpu::Device, label: &str, words: &[u32]) -> wgpu::Buffer {
 }
 
 impl Screen {
+    /// Compiles the shaders for a window whose surface has this format.
+    fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let view = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("view"),
+            size: size_of::<ScreenUniforms>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let nothing = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("nothing"),
+            contents: &[0; 4],
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+        Self {
+            pipeline: blit::pipeline(device, "screen", wgsl(), "color", blit::DRAWN),
+            blit: Blit::new(device, format),
+            view,
+            nothing,
+            seen: None,
+            last: None,
+        }
+    }
+
     /// Draws the picture into a texture.
     fn draw(
         &mut self,
@@ -222,48 +227,4 @@ impl CallbackTrait for OnDevice {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_shader_is_valid_and_laid_out_as_the_host_writes_it() {
-        let module = naga::front::wgsl::parse_str(&wgsl()).unwrap_or_else(|error| {
-            panic!("{}", error.emit_to_string(&wgsl()));
-        });
-        let flags = naga::valid::ValidationFlags::all();
-        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
-        validator.validate(&module).unwrap();
-        let view = module
-            .types
-            .iter()
-            .find(|(_, ty)| ty.name.as_deref() == Some("ScreenUniforms"));
-        let Some((
-            _,
-            naga::Type {
-                inner: naga::TypeInner::Struct { members, span },
-                ..
-            },
-        )) = view
-        else {
-            panic!("no struct ScreenUniforms");
-        };
-        let offsets: Vec<_> = members
-            .iter()
-            .map(|member| member.offset as usize)
-            .collect();
-        assert_eq!(*span as usize, size_of::<ScreenUniforms>());
-        assert_eq!(
-            offsets,
-            [
-                std::mem::offset_of!(ScreenUniforms, origin),
-                std::mem::offset_of!(ScreenUniforms, size),
-                std::mem::offset_of!(ScreenUniforms, canvas),
-                std::mem::offset_of!(ScreenUniforms, marked),
-                std::mem::offset_of!(ScreenUniforms, zoom),
-                std::mem::offset_of!(ScreenUniforms, times),
-                std::mem::offset_of!(ScreenUniforms, verdicts),
-                std::mem::offset_of!(ScreenUniforms, nothing),
-            ]
-        );
-    }
-}
+mod tests;

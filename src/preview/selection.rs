@@ -1,6 +1,6 @@
 //! What is selected: an entity, by its place in the scene and by its name, since the file may move it.
 
-use super::session::title;
+use super::entities::title;
 use crate::scene::{Beam, EntityId, Object, Scene, Surface};
 
 /// What is selected, if anything is.

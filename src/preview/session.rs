@@ -16,7 +16,7 @@ pub(super) use version::{News, Parsed, Version};
 use super::rendering::Rendering;
 use super::undo::{self, Direction, History, Step};
 use crate::edit::{Changes, Refused, Target, Value};
-use crate::scene::{self, EntityId, Object, Scene, Surface};
+use crate::scene::{self, EntityId, Scene};
 use version::Origin;
 
 /// Where something stands in the file.
@@ -26,43 +26,6 @@ pub(super) struct Source {
     pub(super) line: usize,
     /// Its text.
     pub(super) text: String,
-}
-
-/// The type and the name of an entity, as the file says them.
-pub(super) fn title(scene: &Scene, entity: EntityId) -> Option<(&'static str, &str)> {
-    match entity {
-        EntityId::Camera => Some(("camera", &scene.camera.name)),
-        EntityId::Object(i) => scene.objects.get(i).map(|it| (it.entity(), &*it.name)),
-        EntityId::Material(i) => scene.materials.get(i).map(|it| ("material", &*it.name)),
-        EntityId::Light(i) => scene.lights.get(i).map(|it| (it.entity(), &*it.name)),
-        EntityId::Texture(i) => scene.textures.get(i).map(|it| ("texture", &*it.name)),
-    }
-}
-
-/// Whether an object is this entity, or made of it.
-pub(super) fn shows(scene: &Scene, object: usize, entity: EntityId) -> bool {
-    let Some(Object {
-        material, surface, ..
-    }) = scene.objects.get(object)
-    else {
-        return false;
-    };
-    match entity {
-        EntityId::Object(i) => i == object,
-        EntityId::Material(i) => {
-            *material == i
-                || match surface {
-                    Surface::Tiled { altmaterial, .. } => *altmaterial == i,
-                    Surface::Plain | Surface::Procedural { .. } | Surface::Textured { .. } => false,
-                }
-        }
-        EntityId::Texture(i) => match surface {
-            Surface::Textured { texture, .. } => *texture == i,
-            Surface::Plain | Surface::Procedural { .. } | Surface::Tiled { .. } => false,
-        },
-        // Cameras and lights are not seen in the picture.
-        EntityId::Camera | EntityId::Light(_) => false,
-    }
 }
 
 /// The mistakes of a file.
@@ -269,6 +232,13 @@ impl Session {
     pub(super) fn is_fixed(&self, target: Target) -> Option<&'static str> {
         let is_size = target == Target::new(EntityId::Camera, "pixeldim");
         (is_size && self.size.is_some()).then_some("--size counts, and not the file's pixeldim")
+    }
+
+    /// Whether a value may be there, beside what else is changed.
+    pub(super) fn allows(&self, target: Target, value: Value) -> bool {
+        let mut changes = self.changes.clone();
+        let origin = self.origin.as_ref();
+        origin.is_some_and(|origin| changes.set(&origin.scene, target, value).is_ok())
     }
 
     /// Changes a value on top of the file; to what the file has is no change. What the scene language does not allow is

@@ -4,12 +4,12 @@
 
 use eframe::egui::{self, RichText, Ui};
 
+use super::entities::title;
 use super::properties;
-use super::rendering::Rendering;
 use super::selection::{Selection, made_of};
-use super::session::{Session, Source, title};
+use super::session::{Session, Source};
 use super::undo::Direction;
-use crate::edit::{Target, Value};
+use super::wanted::Wanted;
 use crate::scene::{EntityId, NumberRow, Scene};
 
 /// Width of the panel when it is opened first, in points.
@@ -20,29 +20,6 @@ const SELECTED: f32 = 250.0;
 
 /// Height of a list, in points.
 const LIST: f32 = 150.0;
-
-/// What the user wants done.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Wanted {
-    /// A value changed, on top of the file.
-    Set(Target, Value),
-    /// The file's value again.
-    Reset(Target),
-    /// The file's values again, all of them.
-    Discard,
-    /// The picture rendered otherwise.
-    Render(Rendering),
-    /// The changes written into the file.
-    Save,
-    /// The camera's block copied.
-    CopyCamera,
-    /// The picture saved.
-    SavePicture,
-    /// The last step taken back.
-    Undo,
-    /// It done again.
-    Redo,
-}
 
 /// What the panel remembers.
 #[derive(Debug, Default)]

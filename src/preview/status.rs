@@ -81,61 +81,38 @@ pub(super) struct Line {
     pub(super) said: Option<String>,
 }
 
+/// Where there are fewer points across than this, the line has the most important things only.
+const ROOM: f32 = 640.0;
+
 /// Shows the line. Whether the help was asked for.
 pub(super) fn show(ui: &mut Ui, picture: Option<&PreviewPicture>, line: &Line) -> bool {
+    let is_narrow = ui.available_width() < ROOM;
     let mut help = false;
-    ui.horizontal(|ui| {
-        match picture {
-            Some(picture) => {
-                let certified = picture.precision == Precision::Certified;
-                // What is certified of the picture is not so of the file.
-                let kind = if line.trouble {
-                    "the last good picture".to_owned()
-                } else {
-                    kind(picture)
-                };
-                let kind = RichText::new(kind).strong();
-                let color = if certified && !line.trouble {
-                    ui.visuals().strong_text_color()
-                } else {
-                    ui.visuals().warn_fg_color
-                };
-                ui.label(kind.color(color));
-                if !line.rendering.is_empty() {
-                    ui.label(&line.rendering);
-                }
-                let figures = ui.label(figures(picture));
-                let remarks = remarks(picture);
-                if !remarks.is_empty() {
-                    ui.label(
-                        RichText::new("!")
-                            .strong()
-                            .color(ui.visuals().warn_fg_color),
-                    )
-                    .on_hover_text(remarks.join("\n"));
-                    figures.on_hover_text(remarks.join("\n"));
-                }
+    // The button comes first: what is too long is cut off, and it is not.
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let keys = if is_narrow { "F1" } else { "F1 keys" };
+        help = ui.small_button(keys).clicked();
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            if let Some(picture) = picture {
+                of_picture(ui, picture, line, is_narrow);
             }
-            None => {
-                ui.label("no picture yet");
+            if let Some(doing) = &line.doing {
+                separate(ui, picture.is_some());
+                ui.add(egui::Label::new(doing).truncate());
             }
-        }
-        if let Some(doing) = &line.doing {
-            ui.separator();
-            ui.label(doing);
-        }
-        if let Some(frames) = line.frames {
-            ui.label(format!("{frames:.0} pictures/s"));
-        }
-        ui.separator();
-        ui.label(zoom(line.zoom));
-        if let Some(([x, y], [r, g, b])) = line.pixel {
-            ui.separator();
-            ui.monospace(format!("({x}, {y})  {r} {g} {b}"));
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            help = ui.small_button("F1 keys").clicked();
+            if let Some(frames) = line.frames {
+                ui.label(format!("{frames:.0} pictures/s"));
+            }
+            if picture.is_some() && !is_narrow {
+                ui.separator();
+                ui.label(zoom(line.zoom));
+            }
+            if let Some(([x, y], [r, g, b])) = line.pixel {
+                ui.separator();
+                ui.monospace(format!("({x}, {y})  {r} {g} {b}"));
+            }
             if let Some(said) = &line.said {
+                separate(ui, picture.is_some() || line.doing.is_some());
                 ui.add(egui::Label::new(said).truncate())
                     .on_hover_text(said);
             }
@@ -144,10 +121,99 @@ pub(super) fn show(ui: &mut Ui, picture: Option<&PreviewPicture>, line: &Line) -
     help
 }
 
+fn separate(ui: &mut Ui, is_needed: bool) {
+    if is_needed {
+        ui.separator();
+    }
+}
+
+/// How the picture came about.
+fn of_picture(ui: &mut Ui, picture: &PreviewPicture, line: &Line, is_narrow: bool) {
+    let certified = picture.precision == Precision::Certified;
+    // What is certified of the picture is not so of the file.
+    let kind = if line.trouble {
+        "the last good picture".to_owned()
+    } else {
+        kind(picture)
+    };
+    let kind = RichText::new(kind).strong();
+    let color = if certified && !line.trouble {
+        ui.visuals().strong_text_color()
+    } else {
+        ui.visuals().warn_fg_color
+    };
+    let shown = ui.label(kind.color(color));
+    let figures = figures(picture);
+    let remarks = remarks(picture);
+    if is_narrow {
+        shown.on_hover_text([vec![figures], remarks.clone()].concat().join("\n"));
+    } else {
+        if !line.rendering.is_empty() {
+            ui.label(&line.rendering);
+        }
+        let figures = ui.label(figures);
+        if !remarks.is_empty() {
+            figures.on_hover_text(remarks.join("\n"));
+        }
+    }
+    if !remarks.is_empty() {
+        let mark = RichText::new("!").strong();
+        ui.label(mark.color(ui.visuals().warn_fg_color))
+            .on_hover_text(remarks.join("\n"));
+    }
+}
+
 fn zoom(zoom: f64) -> String {
     if zoom >= 1.0 {
         format!("{}:1", short(zoom))
     } else {
         format!("{} %", short((zoom * 1000.0).round() / 10.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    fn shown(width: f32, line: Line) -> Harness<'static> {
+        let mut harness = Harness::builder()
+            .with_size([width, 40.0])
+            .build_ui(move |ui| {
+                show(ui, None, &line);
+            });
+        harness.run_steps(3);
+        harness
+    }
+
+    #[test]
+    fn without_a_picture_nothing_is_said_of_one() {
+        let harness = shown(900.0, Line::default());
+        harness.get_by_label("F1 keys");
+        assert!(harness.query_by_label("1:1").is_none());
+        assert!(harness.query_by_label_contains("picture").is_none());
+    }
+
+    #[test]
+    fn what_is_long_is_cut_off_and_the_button_is_not() {
+        for width in [320.0, 420.0] {
+            let long = "saved 12 changes into a_scene_with_a_long_name.txt, ".repeat(4);
+            let harness = shown(
+                width,
+                Line {
+                    doing: Some("rendering 40 %, about 1.2 s left".into()),
+                    said: Some(long.clone()),
+                    ..Line::default()
+                },
+            );
+            let button = harness.get_by_label("F1").rect();
+            assert!(
+                button.right() <= width && button.left() > 0.8 * width,
+                "{button}"
+            );
+            let said = harness.get_by_label(&long).rect();
+            assert!(said.right() <= button.left(), "{said} {button}");
+        }
     }
 }

@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use super::session::title;
+use super::entities::title;
 use crate::edit::{Changes, Target};
 use crate::scene::Scene;
 

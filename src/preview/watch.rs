@@ -10,7 +10,6 @@
 //! decides.
 
 mod listen;
-mod scene;
 mod settle;
 #[cfg(test)]
 mod tests;
@@ -27,8 +26,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use crate::scene::{LoadError, read_file};
 use listen::Ears;
-pub(super) use scene::SceneWatch;
 use settle::Settle;
+pub(super) use textures::{TextureWatch, textures};
 
 /// Between looks without a sign: some file systems (those of a network) send none, and a folder may be replaced as a
 /// whole.
@@ -218,7 +217,7 @@ fn unix_identity(metadata: &fs::Metadata) -> [i128; 4] {
 }
 
 /// What there is at this moment.
-fn read(path: &Path) -> News {
+pub(super) fn read(path: &Path) -> News {
     // Opening a pipe would wait for its writer.
     if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
         return News::Unreadable(format!(

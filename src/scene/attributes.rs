@@ -114,6 +114,11 @@ impl NumberRow {
         }
     }
 
+    /// Whether it may be left out, and that means something else than zero: it has no numbers then.
+    pub fn may_be_left_out(&self) -> bool {
+        self.row.omitted.is_some()
+    }
+
     /// What the numbers must be, after "must be ".
     pub fn wording(&self) -> String {
         self.row.limit.wording()
@@ -129,18 +134,37 @@ impl NumberRow {
     }
 }
 
+impl NumberRow {
+    /// Whether these numbers say that it is left out.
+    fn is_none(&self, values: &[f64]) -> bool {
+        values.is_empty() && self.may_be_left_out()
+    }
+
+    /// Gives it numbers, as many as it has, or none where it may be left out.
+    fn set(&self, draft: &mut Draft, values: &[f64]) {
+        match self.row.omitted {
+            Some(field) if values.is_empty() => *field(draft) = None,
+            _ => (self.field)(draft).copy_from_slice(values),
+        }
+    }
+}
+
 /// The attributes of an entity that are numbers, in the table's order; none where a scene has no such entity.
 pub fn number_rows(scene: &Scene, id: EntityId) -> impl Iterator<Item = NumberRow> + use<> {
     let rows = kind_of(scene, id).map(|kind| table::of(kind).rows());
     rows.into_iter().flatten().filter_map(NumberRow::new)
 }
 
-/// The numbers of an attribute; nothing where a scene has no such entity, or that has no such attribute, or the
-/// attribute was left out and that means something else than zero.
+/// The numbers of an attribute, which are none where it is left out and that means something else than zero; nothing
+/// where a scene has no such entity, or that has no such attribute.
 pub fn numbers_of(scene: &Scene, id: EntityId, attribute: &str) -> Option<Vec<f64>> {
     let (kind, mut draft) = draft_of(scene, id)?;
     let row = number_row(kind, attribute)?;
-    (!(row.row.left_out)(&draft)).then(|| (row.field)(&mut draft).to_vec())
+    Some(if row.row.is_left_out(&mut draft) {
+        Vec::new()
+    } else {
+        (row.field)(&mut draft).to_vec()
+    })
 }
 
 /// What is wrong with an entity once these attributes of it are changed: that it has none such, a limit of their rows,
@@ -161,15 +185,12 @@ pub(crate) fn fault<'a>(
                 entity.name
             ));
         };
-        if (row.row.left_out)(&draft) {
-            return Some(format!(
-                "`{attribute}` is not given; the file has to say it"
-            ));
-        }
-        if let Some(fault) = number_fault(row.row, values) {
+        if !row.is_none(values)
+            && let Some(fault) = number_fault(row.row, values)
+        {
             return Some(fault);
         }
-        (row.field)(&mut draft).copy_from_slice(values);
+        row.set(&mut draft, values);
     }
     broken_relation(entity, &draft)
 }
@@ -179,10 +200,11 @@ pub(crate) fn put(scene: &mut Scene, id: EntityId, attribute: &str, values: &[f6
     let Some((kind, mut draft)) = draft_of(scene, id) else {
         return;
     };
-    let Some(row) = number_row(kind, attribute).filter(|row| row.count == values.len()) else {
+    let row = number_row(kind, attribute);
+    let Some(row) = row.filter(|row| row.count == values.len() || row.is_none(values)) else {
         return;
     };
-    (row.field)(&mut draft).copy_from_slice(values);
+    row.set(&mut draft, values);
     match (id, kind) {
         (EntityId::Camera, _) => scene.camera = draft.into_camera(),
         (EntityId::Material(index), _) => scene.materials[index] = draft.into_material(),

@@ -141,7 +141,7 @@ pub(super) fn faults(
     for row in entity.rows() {
         let (count, kind) = match row.take {
             Take::Numbers(_, field) | Take::Integers(_, field) | Take::OneOrThree(field) => {
-                if (row.left_out)(draft) {
+                if row.is_left_out(draft) {
                     continue;
                 }
                 faults.extend(row_fault(row, field(draft)));
@@ -200,7 +200,7 @@ pub(super) fn broken_relation(entity: &Entity, draft: &Draft) -> Option<String> 
 /// As in a scene from a file, zero is never negative.
 pub(super) fn positive_zeros(kind: EntityKind, mut draft: Draft) -> Draft {
     for row in table::of(kind).rows() {
-        if (row.left_out)(&draft) {
+        if row.is_left_out(&mut draft) {
             continue;
         }
         if let Take::Numbers(_, field) | Take::OneOrThree(field) = row.take {

@@ -54,7 +54,7 @@ fn list(
     let entity = table::of(kind);
     writeln!(out, "{:<15} {}", entity.name, draft.name)?;
     for row in entity.rows() {
-        if (row.left_out)(&draft) {
+        if row.is_left_out(&mut draft) {
             continue;
         }
         // As the course's listing has it, what every object has stands under its type, its own attributes indented.

@@ -31,8 +31,8 @@ pub(super) struct Attribute {
     pub(super) example: &'static str,
     /// Is it an error to leave it out?
     pub(super) required: bool,
-    /// Was it left out, where that means something else than zero?
-    pub(super) left_out: fn(&Draft) -> bool,
+    /// Where it may be left out and that means something else than zero: the field, which is none then.
+    pub(super) omitted: Option<Omitted>,
 }
 
 /// The values of an attribute: their type, their number, and the field that they go to.
@@ -53,6 +53,8 @@ pub(super) enum Take {
 
 /// Where numbers go: as long as there are values.
 pub(super) type Field = fn(&mut Draft) -> &mut [f64];
+/// Where the numbers of an attribute are that need not be there.
+pub(super) type Omitted = fn(&mut Draft) -> &mut Option<[f64; 3]>;
 /// Where a reference goes.
 pub(super) type Index = fn(&mut Draft) -> &mut usize;
 
@@ -153,6 +155,11 @@ impl Attribute {
     /// Is it a colour: three numbers of which none is negative?
     pub(super) fn is_colour(&self) -> bool {
         matches!(self.take, Take::Numbers(3, _)) && self.limit == Limit::NotNegative
+    }
+
+    /// Is it left out, where that means something else than zero?
+    pub(super) fn is_left_out(&self, draft: &mut Draft) -> bool {
+        self.omitted.is_some_and(|field| field(draft).is_none())
     }
 
     fn is_called(&self, name: &[u8]) -> bool {

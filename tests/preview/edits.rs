@@ -56,7 +56,7 @@ fn wait_for_text(program: &mut Program<'_>, file: &File, text: &str, (x, y): (u3
 }
 
 /// As a hand drags: not all between two frames.
-fn drag(program: &Program<'_>, from: (i32, i32), to: (i32, i32)) {
+pub(crate) fn drag(program: &Program<'_>, from: (i32, i32), to: (i32, i32)) {
     program.window.move_to(from.0, from.1);
     program.window.press(LEFT);
     for step in 1..=10 {
@@ -66,10 +66,7 @@ fn drag(program: &Program<'_>, from: (i32, i32), to: (i32, i32)) {
             .window
             .move_to(part(from.0, to.0), part(from.1, to.1));
     }
-    std::thread::sleep(Duration::from_millis(40));
     program.window.release(LEFT);
-    // A key that comes in the same frame as the last step counts before it; frames are slow where all cores are busy.
-    std::thread::sleep(Duration::from_millis(800));
 }
 
 /// Drags the edge of the ball by so many pixels.
@@ -82,7 +79,10 @@ fn drag_edge(program: &mut Program<'_>, (x, y): (u32, u32), from: i32, by: i32) 
 }
 
 /// The window on the room, whose ball was selected and made smaller by its edge; and where the picture stands.
-fn with_a_smaller_ball<'d>(display: &'d Display, file: &File) -> (Program<'d>, (u32, u32)) {
+pub(crate) fn with_a_smaller_ball<'d>(
+    display: &'d Display,
+    file: &File,
+) -> (Program<'d>, (u32, u32)) {
     let mut program = open(display, &file.path, &[]);
     let place = wait_for_picture(&mut program, "the first picture", &file.picture(ROOM));
     select_ball(&mut program, place);
@@ -91,7 +91,7 @@ fn with_a_smaller_ball<'d>(display: &'d Display, file: &File) -> (Program<'d>, (
 }
 
 /// The radius of the ball in a text.
-fn radius(text: &str) -> f64 {
+pub(crate) fn radius(text: &str) -> f64 {
     let radius = text.split("radius ").nth(1).unwrap();
     radius.split(' ').next().unwrap().parse().unwrap()
 }

@@ -17,6 +17,7 @@ mod hands;
 mod harness;
 mod monkey;
 mod opening;
+mod panels;
 mod program;
 mod shots;
 mod times;

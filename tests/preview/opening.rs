@@ -6,6 +6,7 @@ use std::path::Path;
 
 use image::RgbImage;
 
+use crate::edits::{radius, with_a_smaller_ball};
 use crate::program::Program;
 use crate::window::{File, ROOM, close, command, open, wait_for_picture};
 use crate::x11::{Display, keys};
@@ -197,4 +198,75 @@ fn ten_mistakes_are_called_so_and_the_picture_under_them_is_not_certified() {
         (title.ends_with("mistakes") && !title.contains("certified")).then_some(())
     });
     close(program);
+}
+
+/// Where nothing is but the window's ground, which a question over the window makes darker.
+fn corner(shot: &RgbImage) -> u32 {
+    shot.get_pixel(3, 3).0.map(u32::from).iter().sum()
+}
+
+#[test]
+fn a_file_that_is_dropped_is_opened_and_says_so_before() {
+    let display = Display::start(1400, 900);
+    let file = File::new(ROOM);
+    let mut program = open(&display, &file.path, &[]);
+    wait_for_picture(&mut program, "the first scene", &file.picture(ROOM));
+    let text = ROOM.replace("radius 2.5", "radius 1");
+    let other = file.beside("other.txt");
+    fs::write(&other, &text).unwrap();
+    let before = program.wait("a screenshot", |window| window.screenshot());
+    let dragged = program.window.drag_over(&other);
+    program.wait_for("what a drop would do", |shot| {
+        corner(shot) < corner(&before)
+    });
+    dragged.drop_it();
+    wait_for_title(&mut program, "other.txt");
+    wait_for_picture(&mut program, "the dropped scene", &file.picture(&text));
+    close(program);
+}
+
+#[test]
+fn another_scene_is_opened_only_once_it_is_agreed_what_becomes_of_changes() {
+    let display = Display::start(1400, 900);
+    let text = ROOM.replace("radius 2.5", "radius 1");
+    // By the dialog, then by a drop; what is answered is the number of the button, or that it is left.
+    for (way, answer) in [("o", 0), ("drop", 1), ("drop", 2)] {
+        let file = File::new(ROOM);
+        let other = file.beside("other.txt");
+        fs::write(&other, &text).unwrap();
+        let (mut program, _) = with_a_smaller_ball(&display, &file);
+        program.window.move_to(5, 5);
+        program.wait("the smaller ball", |window| {
+            window.title().ends_with("certified").then_some(())
+        });
+        let before = program.wait("a screenshot", |window| window.screenshot());
+        if way == "o" {
+            program.window.key('o'.into(), &[keys::CONTROL]);
+            choose(&mut program, &other);
+        } else {
+            program.window.drag_over(&other).drop_it();
+        }
+        program.wait_for("the question", |shot| corner(shot) < corner(&before));
+        if answer == 0 {
+            program.window.key(keys::ESCAPE, &[]);
+            program.wait_for("its end", |shot| corner(shot) == corner(&before));
+            assert!(program.window.title().starts_with("room.txt*"));
+            assert_eq!(file.read(), ROOM);
+            program.window.key('z'.into(), &[keys::CONTROL]);
+            program.wait("the undone change", |window| {
+                (!window.title().contains('*')).then_some(())
+            });
+        } else {
+            for _ in 0..answer {
+                program.window.key(keys::TAB, &[]);
+            }
+            program.window.key(' '.into(), &[]);
+            wait_for_title(&mut program, "other.txt");
+            wait_for_picture(&mut program, "the other scene", &file.picture(&text));
+            // Saved before, or lost as was agreed.
+            assert_eq!(radius(&file.read()) < 2.5, answer == 1, "{}", file.read());
+            assert_eq!(fs::read_to_string(&other).unwrap(), text);
+        }
+        close(program);
+    }
 }

@@ -103,15 +103,7 @@ impl<'d> Program<'d> {
 
     /// The seconds that its threads computed so far, all together.
     pub(crate) fn cpu_seconds(&self) -> f64 {
-        let path = format!("/proc/{}/stat", self.process.child.id());
-        let stat = fs::read_to_string(path).unwrap();
-        // Behind the name in parentheses the fields are numbered from 3: 14 and 15 are ticks, of which 100 are a second.
-        let (_, fields) = stat.rsplit_once(") ").unwrap();
-        let ticks = fields.split(' ').skip(14 - 3).take(2);
-        ticks
-            .map(|ticks| ticks.parse::<f64>().unwrap())
-            .sum::<f64>()
-            / 100.0
+        cpu_seconds(&self.process.child.id().to_string(), 14)
     }
 
     /// Closes the window as a user does, and waits for the end.
@@ -138,6 +130,21 @@ impl<'d> Program<'d> {
             said: self.process.last_words(),
         }
     }
+}
+
+/// The seconds that processes computed which this one started and waited for.
+pub(crate) fn cpu_seconds_of_children() -> f64 {
+    cpu_seconds("self", 16)
+}
+
+/// Two fields of what the system tells of a process, both of them times: by the program and by the system for it.
+fn cpu_seconds(process: &str, field: usize) -> f64 {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    // Behind the name in parentheses the fields are numbered from 3. Of their ticks 100 are a second.
+    let (_, fields) = stat.rsplit_once(") ").unwrap();
+    let ticks = fields.split(' ').skip(field - 3).take(2);
+    let ticks: f64 = ticks.map(|ticks| ticks.parse::<f64>().unwrap()).sum();
+    ticks / 100.0
 }
 
 /// A process, what it prints, and how long it has for all it does.

@@ -73,6 +73,7 @@ fn shots() {
     program.close();
 
     small_window(&display);
+    progress(&display);
     start_page(&display);
     hints(&display);
 }
@@ -87,6 +88,21 @@ fn small_window(display: &Display) {
     program.close();
 }
 
+/// A slow scene, while its certified picture is made.
+fn progress(display: &Display) {
+    let path = common::scenes().join("showcase.txt");
+    let mut program = open(display, &path, &["--size", "1920x1080", "--samples", "16"]);
+    program.window.resize(900, 640);
+    program.window.move_to(5, 5);
+    program.wait("a first picture", |window| {
+        window.title().contains("fast").then_some(())
+    });
+    // Not at the very beginning.
+    std::thread::sleep(Duration::from_secs(8));
+    save(&program, "progress.png");
+    program.close();
+}
+
 fn start_page(display: &Display) {
     let file = File::new("");
     let state = file.beside("state/plumb");
@@ -96,6 +112,7 @@ fn start_page(display: &Display) {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_plumb"));
     command.arg("preview");
     command.env("XDG_STATE_HOME", file.beside("state"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR"));
     let program = Program::start(display, command);
     program.window.focus();
     program.window.resize(700, 420);
@@ -104,9 +121,7 @@ fn start_page(display: &Display) {
     program.window.key('o'.into(), &[keys::CONTROL]);
     std::thread::sleep(Duration::from_millis(500));
     program.window.key('a'.into(), &[keys::CONTROL]);
-    program
-        .window
-        .type_text(&format!("{}/", common::scenes().display()));
+    program.window.type_text("scenes/");
     std::thread::sleep(Duration::from_secs(1));
     save(&program, "open.png");
     program.close();
@@ -124,6 +139,7 @@ triangle lost { material wall  vertex1 1 9 -1  vertex2 2 9 -1  vertex3 2 10 -1 }
     );
     let mut program = open(display, &file.path, &[]);
     program.window.resize(900, 640);
+    program.window.move_to(5, 5);
     rest(&mut program);
     save(&program, "hints.png");
     program.close();
@@ -143,6 +159,8 @@ fn shots_of_what_is_changed() {
         std::thread::sleep(Duration::from_millis(700));
         program.window.move_to(over.0, over.1);
         rest(&mut program);
+        // What explains the pixel comes when it is there.
+        std::thread::sleep(Duration::from_secs(3));
         save(&program, name);
         program.close();
     };

@@ -12,7 +12,7 @@ use plumb::edit::{Changes, Target};
 use plumb::scene::load;
 
 use crate::common;
-use crate::program::Program;
+use crate::program::{Program, cpu_seconds_of_children};
 use crate::window::{File, command, picture, wait_for_picture};
 use crate::x11::{Display, LEFT};
 
@@ -194,25 +194,41 @@ fn times_from_input_to_screen() {
     assert_eq!(program.close().status.code(), Some(0));
 }
 
-/// What the first pictures cost where nothing moves.
+/// What the first pictures cost where nothing moves, in the window and on the command line.
 #[test]
 #[ignore = "measures"]
 fn times_of_the_first_pictures() {
     let path = showcase();
     let display = Display::start(1500, 1000);
-    let mut command = command(&path, &["--size", "1920x1080"]);
+    let size = ["--size", "1920x1080"];
+    let mut command = command(&path, &size);
     command.env("RUST_LOG", "error,plumb=info");
     let start = Instant::now();
     let mut program = Program::start(&display, command);
     for kind in ["fast", "certified"] {
-        program.wait(kind, |window| window.title().ends_with(kind).then_some(()));
+        program.wait(kind, |window| window.title().contains(kind).then_some(()));
         println!(
-            "{}: {kind} after {:.1} s, {:.1} CPU-seconds",
+            "{}: {} after {:.1} s, {:.1} CPU-seconds",
             path.display(),
+            program.window.title(),
             start.elapsed().as_secs_f64(),
             program.cpu_seconds()
         );
     }
     print!("{}", program.said());
     assert_eq!(program.close().status.code(), Some(0));
+    let folder = tempfile::tempdir().unwrap();
+    for backend in ["auto", "gpu"] {
+        let (start, before) = (Instant::now(), cpu_seconds_of_children());
+        let mut alone = std::process::Command::new(env!("CARGO_BIN_EXE_plumb"));
+        alone.arg("render").arg(&path).args(size);
+        alone.args(["--backend", backend, "-o"]);
+        let done = alone.arg(folder.path().join("out.ppm")).output().unwrap();
+        assert!(done.status.success(), "{done:?}");
+        println!(
+            "on the command line, --backend {backend}: certified after {:.1} s, {:.1} CPU-seconds",
+            start.elapsed().as_secs_f64(),
+            cpu_seconds_of_children() - before
+        );
+    }
 }

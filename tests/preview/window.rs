@@ -43,6 +43,11 @@ impl File {
         Self { folder, path }
     }
 
+    /// Its name in its folder.
+    pub(crate) fn name(&self) -> &str {
+        self.path.file_name().unwrap().to_str().unwrap()
+    }
+
     /// Another name in the same folder.
     pub(crate) fn beside(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)

@@ -4,6 +4,8 @@
 //! [`Window::focus`].
 #![allow(dead_code, reason = "every test uses a part")]
 
+mod drag;
+
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::thread;

@@ -134,11 +134,12 @@ fn values_keep_the_limits_of_their_attributes() {
             [7.0, 0.0, 0.0].into(),
             "`vertex3` must not lie in a line with `vertex1` and `vertex2`: they are no triangle",
         ),
+        (triangle, "normal", Value::LEFT_OUT, "taken"),
         (
-            triangle,
-            "normal",
-            [0.0, 0.0, 1.0].into(),
-            "`normal` is not given; the file has to say it",
+            BALL,
+            "radius",
+            Value::LEFT_OUT,
+            "`radius` takes 1 of them, not 0",
         ),
         (
             cone,
@@ -169,7 +170,7 @@ fn values_keep_the_limits_of_their_attributes() {
     assert_eq!(changes.get(ambient), Some([0.0, 1e300, 2.0].into()));
     changes.set(&scene, ambient, [-0.0, 1.0, 1.0]).unwrap();
     assert_eq!(changes.get(ambient).unwrap().numbers()[0].to_bits(), 0);
-    assert_eq!(changes.len(), 8);
+    assert_eq!(changes.len(), 9);
     assert_eq!(
         changes.reset(&scene, ambient),
         Ok(Some([0.0, 1.0, 1.0].into()))
@@ -249,12 +250,23 @@ fn every_number_of_every_entity_can_be_changed() {
     let mut names = Vec::new();
     for target in all.flat_map(|entity| Target::all_of(&scene, entity)) {
         names.push(target.attribute());
-        let Some(value) = target.value_in(&scene) else {
-            continue;
-        };
+        let value = target.value_in(&scene).unwrap();
         let mut changes = Changes::new();
         changes.set(&scene, target, value).unwrap();
         assert_eq!(changes.apply(&scene), scene);
+        // What may be left out can be given, and left out again.
+        let mut rows = scene::number_rows(&scene, target.entity());
+        let row = rows.find(|row| row.name() == target.attribute()).unwrap();
+        let omitted = changes.set(&scene, target, Value::LEFT_OUT).is_ok();
+        assert_eq!(omitted, row.may_be_left_out(), "{target:?}");
+        if omitted {
+            let without = changes.apply(&scene);
+            assert_eq!(target.value_in(&without), Some(Value::LEFT_OUT));
+            let mut given = Changes::new();
+            given.set(&without, target, [0.5, 2.0, 3.0]).unwrap();
+            let with = given.apply(&without);
+            assert_eq!(target.value_in(&with), Some([0.5, 2.0, 3.0].into()));
+        }
         // Each number by itself, to one that is allowed.
         for index in 0..value.numbers().len() {
             let mut numbers = value.numbers().to_vec();

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::App;
 use crate::certify::verdict::meaning;
 use crate::preview::draw::{ObjectMap, Outlined};
+use crate::preview::entities;
 use crate::preview::inspect::{Answer, Question};
-use crate::preview::session;
 use crate::scene::EntityId;
 use crate::settings::Precision;
 
@@ -120,7 +120,7 @@ impl App {
         let scene = &picture.scene;
         let mut words = vec![0_u32; scene.objects.len() / 32 + 1];
         for object in 0..scene.objects.len() {
-            if session::shows(scene, object, entity) {
+            if entities::shows(scene, object, entity) {
                 words[(object + 1) / 32] |= 1 << ((object + 1) % 32);
             }
         }

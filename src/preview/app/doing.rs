@@ -8,9 +8,11 @@ use std::time::Instant;
 use eframe::egui::{self, Context};
 use glam::DVec3;
 
-use super::{App, Event};
+use super::App;
+use super::events::Event;
 use crate::edit::{Target, Value, camera_block};
 use crate::preview::chooser::Purpose;
+use crate::preview::entities::title;
 use crate::preview::keys::{self, Command};
 use crate::preview::overlay::SaveAs;
 use crate::preview::picture;
@@ -18,9 +20,9 @@ use crate::preview::priority;
 use crate::preview::save;
 use crate::preview::selection::Selection;
 use crate::preview::session;
-use crate::preview::side::Wanted;
 use crate::preview::undo::{Direction, Step};
 use crate::preview::viewport::{self, Area, Viewport};
+use crate::preview::wanted::Wanted;
 use crate::scene::{self, EntityId, LoadError, Scene};
 
 impl App {
@@ -87,8 +89,8 @@ impl App {
         let state = self.shared.lock();
         if let Some(good) = state.session.good() {
             self.side.selection.select(&good.scene, entity);
-            let title = entity.and_then(|entity| session::title(&good.scene, entity));
-            let (kind, name) = title.unwrap_or(("nothing", ""));
+            let titled = entity.and_then(|entity| title(&good.scene, entity));
+            let (kind, name) = titled.unwrap_or(("nothing", ""));
             log::info!("selected {kind} {name}");
         }
     }

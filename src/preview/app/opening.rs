@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Align2, Context, FontId};
 
-use super::{App, Event};
+use super::App;
+use super::events::Event;
 use crate::preview::chooser::{Choice, Chooser, Purpose};
+use crate::preview::scene_watch::SceneWatch;
 use crate::preview::selection::Selection;
 use crate::preview::session::Session;
 use crate::preview::start::Start;
 use crate::preview::viewport::Viewport;
-use crate::preview::watch::SceneWatch;
 
 /// What a new scene is.
 const TEMPLATE: &str = include_str!("../template.txt");
@@ -170,6 +171,7 @@ impl App {
         self.hints.take(Vec::new());
         self.showing.viewport = Viewport::Fit;
         self.showing.outlined = None;
+        log::info!("opened {}", path.display());
         self.recent.opened(&path);
         match self.watching(&path) {
             Ok(watch) => self.watch = Some(watch),

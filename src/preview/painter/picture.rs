@@ -60,7 +60,7 @@ impl Cached {
 }
 
 /// The pixels of a part of the window that the picture covers.
-fn drawn(draw: &Draw, area: Part) -> Vec<u32> {
+pub(super) fn drawn(draw: &Draw, area: Part) -> Vec<u32> {
     let [across, down] = [0, 1].map(|axis| -> Vec<Taps> {
         let along = area.from[axis]..area.to[axis];
         along.map(|at| Taps::new(draw, axis, at as i32)).collect()

@@ -234,3 +234,141 @@ fn paint_evenly(pixels: &mut [u32], color: Channels) {
         *pixel = after;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{Rect, pos2};
+    use eframe::epaint::ImageDelta;
+    use eframe::epaint::textures::{TextureOptions, TexturesDelta};
+
+    use crate::preview::painter::textures::Textures;
+
+    const SIZE: [u32; 2] = [16, 12];
+
+    /// A texture of two texels beside each other: white, and half of it.
+    fn textures() -> Textures {
+        let texels = vec![
+            Color32::WHITE,
+            Color32::from_rgba_premultiplied(0, 0, 0, 128),
+        ];
+        let image = eframe::egui::ColorImage::new([2, 1], texels);
+        let delta = ImageDelta::full(image, TextureOptions::LINEAR);
+        let mut deltas = TexturesDelta::default();
+        deltas
+            .set
+            .entry(Default::default())
+            .or_default()
+            .push(delta);
+        let mut textures = Textures::default();
+        assert!(textures.update(&mut deltas));
+        textures
+    }
+
+    fn painted(mesh: &Mesh, scale: f32) -> Frame {
+        let mut frame = Frame {
+            size: SIZE,
+            pixels: vec![0; (SIZE[0] * SIZE[1]) as usize],
+            fresh: Vec::new(),
+        };
+        let textures = textures();
+        let texture = textures.get(Default::default()).unwrap();
+        let clip = Part::whole(SIZE);
+        Triangles::new(mesh, texture, clip, scale).paint(&mut frame, clip);
+        frame
+    }
+
+    /// Corners at these places, in the first texel.
+    fn mesh(corners: &[[f32; 2]], color: Color32) -> Mesh {
+        let vertices = corners.iter().map(|[x, y]| Vertex {
+            pos: pos2(*x, *y),
+            uv: pos2(0.25, 0.5),
+            color,
+        });
+        let mut mesh = Mesh::default();
+        mesh.vertices.extend(vertices);
+        mesh
+    }
+
+    #[test]
+    fn a_pixel_is_painted_where_its_middle_lies_within_and_only_once() {
+        // Two triangles that share a side; what both painted would be less than half through.
+        let color = Color32::from_rgba_premultiplied(100, 0, 0, 128);
+        let corners = [[1.2, 0.7], [13.6, 2.1], [11.3, 10.9], [2.9, 8.2]];
+        let mut mesh = mesh(&corners, color);
+        mesh.indices.extend([0, 1, 2, 0, 2, 3]);
+        let frame = painted(&mesh, 1.0);
+        let is_within = |x: f32, y: f32| {
+            (0..4).all(|i| {
+                let ([ax, ay], [bx, by]) = (corners[i], corners[(i + 1) % 4]);
+                (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0
+            })
+        };
+        let once = over(0, [100.0, 0.0, 0.0, 128.0]);
+        for y in 0..SIZE[1] {
+            for x in 0..SIZE[0] {
+                let wanted = if is_within(x as f32 + 0.5, y as f32 + 0.5) {
+                    once
+                } else {
+                    0
+                };
+                let found = frame.pixels[(y * SIZE[0] + x) as usize];
+                assert_eq!(found, wanted, "({x}, {y})");
+            }
+        }
+    }
+
+    #[test]
+    fn points_are_so_many_pixels() {
+        let mut mesh = mesh(&[], Color32::WHITE);
+        mesh.add_colored_rect(
+            Rect::from_min_max(pos2(1.0, 2.0), pos2(4.0, 5.0)),
+            Color32::RED,
+        );
+        for vertex in &mut mesh.vertices {
+            vertex.uv = pos2(0.25, 0.5);
+        }
+        let frame = painted(&mesh, 2.0);
+        let red = u32::from_le_bytes([255, 0, 0, 255]);
+        let count = frame.pixels.iter().filter(|pixel| **pixel == red).count();
+        assert_eq!(count, 6 * 6);
+        assert_eq!(frame.pixels[4 * SIZE[0] as usize + 2], red);
+    }
+
+    #[test]
+    fn colours_change_evenly_and_are_blended() {
+        let mut mesh = mesh(
+            &[[0.0, 0.0], [16.0, 0.0], [0.0, 12.0], [16.0, 12.0]],
+            Color32::BLACK,
+        );
+        for (vertex, red) in mesh.vertices.iter_mut().zip([0, 160, 0, 160]) {
+            vertex.color = Color32::from_rgb(red, 0, 0);
+        }
+        mesh.indices.extend([0, 1, 2, 1, 3, 2]);
+        let frame = painted(&mesh, 1.0);
+        for x in 0..16_u32 {
+            // The middle of a column is half a column to the right.
+            let red = 10 * x as u8 + 5;
+            let wanted = u32::from_le_bytes([red, 0, 0, 255]);
+            assert_eq!(frame.pixels[x as usize], wanted, "{x}");
+            assert_eq!(frame.pixels[11 * 16 + x as usize], wanted, "{x}");
+        }
+        let white = u32::from_le_bytes([255; 4]);
+        assert_eq!(
+            over(white, [0.0, 0.0, 0.0, 127.5]),
+            u32::from_le_bytes([128, 128, 128, 255])
+        );
+        assert_eq!(over(white, [0.0; 4]), white);
+    }
+
+    #[test]
+    fn a_texture_is_sampled_between_its_texels() {
+        let textures = textures();
+        let texture = textures.get(Default::default()).unwrap();
+        assert_eq!(texture.at(pos2(0.25, 0.5)), [255.0; 4]);
+        assert_eq!(texture.at(pos2(0.75, 0.5)), [0.0, 0.0, 0.0, 128.0]);
+        assert_eq!(texture.at(pos2(0.5, 0.5)), [127.5, 127.5, 127.5, 191.5]);
+        // Beyond the edge it is as at the edge.
+        assert_eq!(texture.at(pos2(-0.5, 2.0)), [255.0; 4]);
+    }
+}

@@ -2,8 +2,9 @@
 //! what there is to be lost. Two lines at most: all numbers that the file has, where it is another one, and what
 //! happened, with all numbers that are shown otherwise.
 
-use super::{Session, title};
+use super::Session;
 use crate::edit::{Target, Value};
+use crate::preview::entities::title;
 use crate::scene::{EntityId, Scene};
 
 impl Session {

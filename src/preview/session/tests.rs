@@ -275,9 +275,4 @@ fn everything_is_found_in_the_file() {
     assert!(source.text.starts_with("plane floor {") && source.text.ends_with('}'));
     assert_eq!(session.source(EntityId::Material(0)).unwrap().line, 3);
     assert_eq!(session.source(EntityId::Light(0)), None);
-    let scene = &session.good().unwrap().scene;
-    assert_eq!(title(scene, EntityId::Object(0)), Some(("sphere", "ball")));
-    assert_eq!(title(scene, EntityId::Object(2)), None);
-    assert!(shows(scene, 0, EntityId::Material(0)) && !shows(scene, 1, EntityId::Material(0)));
-    assert!(shows(scene, 1, EntityId::Object(1)) && !shows(scene, 0, EntityId::Object(1)));
 }

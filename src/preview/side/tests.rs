@@ -7,6 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::edit::{Target, Value};
 use crate::preview::session::{News, Version};
 use crate::preview::undo::Step;
 
@@ -223,6 +224,52 @@ fn every_entity_has_a_panel_of_all_its_numbers() {
     ];
     for (label, names) in known {
         assert_eq!(rows_of(&mut panel, label), names);
+    }
+}
+
+#[test]
+fn what_is_left_out_can_be_added_and_left_out_again() {
+    let mut panel = panel();
+    panel.get_by_label("tri  (triangle)").click();
+    panel.run_steps(3);
+    let rows = ["normal", "point"].map(|name| Target::new(EntityId::Object(3), name));
+    for row in rows {
+        assert_eq!(
+            panel.state().session.value(row),
+            Some(Value::LEFT_OUT),
+            "{row:?}"
+        );
+        panel.get_all_by_label("add").next().unwrap().click();
+        panel.run_steps(3);
+        let value = panel.state().session.value(row).unwrap();
+        assert_eq!(value.numbers().len(), 3, "{row:?}");
+    }
+    assert_eq!(panel.state().session.unsaved().len(), 2);
+    for row in rows {
+        panel.get_all_by_label("leave out").next().unwrap().click();
+        panel.run_steps(3);
+        assert_eq!(
+            panel.state().session.value(row),
+            Some(Value::LEFT_OUT),
+            "{row:?}"
+        );
+    }
+    assert!(panel.state().session.unsaved().is_empty());
+    // A quadric's box has its other corner beside it.
+    panel.get_by_label("cone  (quadric)").click();
+    panel.run_steps(3);
+    let [lower, upper] = ["lower", "upper"].map(|name| Target::new(EntityId::Object(2), name));
+    for (row, number) in [(lower, 0), (upper, 1)] {
+        panel
+            .get_all_by_label("leave out")
+            .nth(number)
+            .unwrap()
+            .click();
+        panel.run_steps(3);
+        panel.get_by_label("add").click();
+        panel.run_steps(3);
+        let value = panel.state().session.value(row).unwrap();
+        assert_eq!(value.numbers().len(), 3, "{row:?}");
     }
 }
 

@@ -20,7 +20,7 @@ type Seen = (PathBuf, Option<Stamp>);
 
 /// Tells when one of the textures was written, until it is dropped.
 #[derive(Debug, Clone)]
-pub(super) struct TextureWatch {
+pub(in crate::preview) struct TextureWatch {
     files: Sender<Vec<Seen>>,
 }
 
@@ -29,7 +29,9 @@ impl TextureWatch {
     ///
     /// # Errors
     /// When there can be no thread.
-    pub(super) fn new(mut tell: impl FnMut() + Send + 'static) -> std::io::Result<Self> {
+    pub(in crate::preview) fn new(
+        mut tell: impl FnMut() + Send + 'static,
+    ) -> std::io::Result<Self> {
         let (files, receiver) = mpsc::channel::<Vec<Seen>>();
         thread::Builder::new()
             .name("textures".into())
@@ -57,14 +59,14 @@ impl TextureWatch {
 
     /// Watches these, and no others. They are looked at now, and not when the thread comes to it: whoever reads them
     /// after this misses nothing that is written later.
-    pub(super) fn turn_to(&self, files: Vec<PathBuf>) {
+    pub(in crate::preview) fn turn_to(&self, files: Vec<PathBuf>) {
         // The thread ends only with this.
         let _ = self.files.send(seen(files));
     }
 }
 
 /// The files of the textures that a text names, whether they are there or not, and whether it is a good one or not.
-pub(super) fn textures(text: &[u8], folder: &Path) -> Vec<PathBuf> {
+pub(in crate::preview) fn textures(text: &[u8], folder: &Path) -> Vec<PathBuf> {
     let places: Places = places(text);
     let mut files = Vec::new();
     for index in 0.. {

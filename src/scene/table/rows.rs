@@ -15,7 +15,7 @@ const fn row(name: &'static str, example: &'static str, take: Take, limit: Limit
         limit,
         example,
         required: true,
-        left_out: |_| false,
+        omitted: None,
     }
 }
 
@@ -27,7 +27,7 @@ const fn optional(name: &'static str, take: Take, limit: Limit) -> Attribute {
         limit,
         example: "",
         required: false,
-        left_out: |_| false,
+        omitted: None,
     }
 }
 
@@ -136,7 +136,7 @@ const TILED: &[Attribute] = &[
         )
     },
     Attribute {
-        left_out: |d| d.xdir.is_none(),
+        omitted: Some(|d| &mut d.xdir),
         ..optional(
             "xdir",
             Take::Numbers(3, |d| d.xdir.get_or_insert_default()),
@@ -242,7 +242,7 @@ const TRIANGLE: &[Attribute] = &[
         &mut d.vertices[2]
     }),
     Attribute {
-        left_out: |d| d.facing.is_none(),
+        omitted: Some(|d| &mut d.facing),
         ..optional(
             "normal",
             Take::Numbers(3, |d| d.facing.get_or_insert_default()),
@@ -250,7 +250,7 @@ const TRIANGLE: &[Attribute] = &[
         )
     },
     Attribute {
-        left_out: |d| d.idle_point.is_none(),
+        omitted: Some(|d| &mut d.idle_point),
         ..optional(
             "point",
             Take::Numbers(3, |d| d.idle_point.get_or_insert_default()),
@@ -267,7 +267,7 @@ const QUADRIC: &[Attribute] = &[
         Limit::NotConstant,
     ),
     Attribute {
-        left_out: |d| d.lower.is_none(),
+        omitted: Some(|d| &mut d.lower),
         ..optional(
             "lower",
             Take::Numbers(3, |d| d.lower.get_or_insert_default()),
@@ -275,7 +275,7 @@ const QUADRIC: &[Attribute] = &[
         )
     },
     Attribute {
-        left_out: |d| d.upper.is_none(),
+        omitted: Some(|d| &mut d.upper),
         ..optional(
             "upper",
             Take::Numbers(3, |d| d.upper.get_or_insert_default()),

@@ -8,7 +8,7 @@ use plumb::scene::EntityId;
 
 use super::Monkey;
 use crate::program::Program;
-use crate::x11::{LEFT, MIDDLE, RIGHT, keys};
+use crate::x11::{LEFT, MIDDLE, RIGHT, Window, keys};
 
 /// Keys that do something, and some that only fields of text take.
 const KEYS: &[u32] = &[
@@ -31,6 +31,16 @@ const KEYS: &[u32] = &[
 
 /// Characters that are typed.
 const CHARACTERS: &str = "0123456789.-rfvioctp+sszzzyzwq";
+
+/// Where nothing is to be lost a window is closed once in so many times that this comes to the monkey's mind: windows
+/// are to live for minutes, since memory that grows is seen in nothing else.
+const CLOSES: i32 = 300;
+
+/// A question is left on the screen once in so many times: what comes to the monkey's mind then soon closes the window.
+const STAYS: i32 = 150;
+
+/// A question needs about so long to be on the screen.
+const QUESTION: Duration = Duration::from_millis(80);
 
 impl Monkey<'_> {
     /// Whatever comes to its mind.
@@ -55,14 +65,15 @@ impl Monkey<'_> {
             25..=49 => {
                 let characters: Vec<char> = CHARACTERS.chars().collect();
                 let key = self.random.of(&characters);
-                // These close the window, which is to be rare.
-                let closes = "wq".contains(key) && self.random.below(8) > 0;
-                let held: &[u32] = match self.random.below(4) {
-                    0 | 1 if !closes => &[keys::CONTROL],
-                    2 if key == 'z' => &[keys::CONTROL, keys::SHIFT],
-                    _ => &[],
-                };
-                window.key(key.into(), held);
+                match self.random.below(4) {
+                    0 | 1 if "wq".contains(key) => self.close(program, |window| {
+                        window.key(key.into(), &[keys::CONTROL]);
+                    }),
+                    0 | 1 if key == 'o' => self.open(program),
+                    0 | 1 => window.key(key.into(), &[keys::CONTROL]),
+                    2 if key == 'z' => window.key(key.into(), &[keys::CONTROL, keys::SHIFT]),
+                    _ => window.key(key.into(), &[]),
+                }
             }
             50..=64 => window.click(from.0, from.1),
             65..=84 => {
@@ -88,13 +99,49 @@ impl Monkey<'_> {
                 window.resize(size.0 as u32, size.1 as u32);
             }
             94..=97 => self.write(),
-            98 if self.random.below(4) == 0 => window.ask_to_close(),
+            98 if self.random.below(4) == 0 => {
+                self.close(program, |window| window.ask_to_close());
+            }
             _ => {
                 // A mistake for a while, wherever the text is cut off.
                 let end = self.good.len() * self.random.below(100) as usize / 100;
                 let start = self.good.get(..end).unwrap_or_default();
                 self.file.write(&format!("{start}\ncamera {{"));
             }
+        }
+    }
+
+    /// Wants the window closed. The question that comes where changes are not in the file is mostly answered with no;
+    /// else it is there for whatever comes to its mind next.
+    fn close(&mut self, program: &Program<'_>, ask: impl Fn(&Window<'_>)) {
+        if self.model.to_be_lost() == 0 && self.random.below(CLOSES) > 0 {
+            return;
+        }
+        ask(&program.window);
+        if self.random.below(STAYS) > 0 {
+            thread::sleep(QUESTION);
+            program.window.key(keys::ESCAPE, &[]);
+        }
+    }
+
+    /// Asks for another scene, and opens this one again or none: a path leads to everybody's files, so nothing is left
+    /// to chance while it can be typed.
+    fn open(&mut self, program: &Program<'_>) {
+        let window = &program.window;
+        window.key('o'.into(), &[keys::CONTROL]);
+        thread::sleep(QUESTION);
+        if self.random.below(2) == 0 {
+            window.type_text(self.file.name());
+            window.key(keys::RETURN, &[]);
+            thread::sleep(QUESTION);
+        } else {
+            window.type_text("nothing");
+            window.key(keys::TAB, &[]);
+        }
+        // The dialog is closed, or the question whether changes are to be lost is answered with no.
+        for _ in 0..2 {
+            window.key(keys::ESCAPE, &[]);
+            thread::sleep(QUESTION);
         }
     }
 

@@ -38,6 +38,15 @@ impl Model {
             .count()
     }
 
+    /// A scene was opened: nothing is known of it, and there is nothing to be undone.
+    pub(crate) fn forget(&mut self) {
+        let counts = std::mem::take(&mut self.counts);
+        *self = Self {
+            counts,
+            ..Self::default()
+        };
+    }
+
     /// Takes what the log says. What is wrong with it, if anything is.
     pub(crate) fn take(&mut self, line: &str) -> Result<(), String> {
         let mut words = line.split("; ");
@@ -159,7 +168,8 @@ fn number(text: &str) -> Result<(String, Vec<f64>), String> {
     let (key, values) = text
         .split_once(" [")
         .ok_or(format!("{text} is no number"))?;
-    let values = values.trim_end_matches(']').split(", ");
+    // What is left out has none.
+    let values = values.trim_end_matches(']').split_terminator(", ");
     let values: Result<_, _> = values.map(str::parse).collect();
     let values = values.map_err(|error| format!("{text}: {error}"))?;
     Ok((key.to_owned(), values))

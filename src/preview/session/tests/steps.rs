@@ -48,6 +48,9 @@ fn every_kind_of_change_is_undone_byte_for_byte_and_done_again() {
     for target in targets {
         let value = session.value(target).unwrap();
         let mut numbers = value.numbers().to_vec();
+        if numbers.is_empty() {
+            numbers = vec![1.0, 2.0, 3.0];
+        }
         let last = numbers.len() - 1;
         numbers[last] = match target.attribute() {
             "transparency" => 0.25,

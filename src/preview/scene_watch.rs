@@ -1,16 +1,16 @@
-//! Watching a scene: its file, and those of its textures.
+//! Watching a scene: its file, and those of its textures. From what [`watch`](super::watch) finds to news for the
+//! [`session`](super::session), read and parsed.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::textures::{TextureWatch, textures};
-use super::{News as Found, Watcher, read};
-use crate::preview::session::News;
+use super::session::News;
+use super::watch::{News as Found, TextureWatch, Watcher, read, textures};
 
 /// Tells of the scene until it is dropped.
 #[derive(Debug)]
-pub(in crate::preview) struct SceneWatch {
+pub(super) struct SceneWatch {
     _file: Watcher,
     _textures: TextureWatch,
 }
@@ -34,10 +34,7 @@ impl SceneWatch {
     ///
     /// # Errors
     /// When there can be no threads.
-    pub(in crate::preview) fn new(
-        path: &Path,
-        tell: impl FnMut(News) + Send + 'static,
-    ) -> io::Result<Self> {
+    pub(super) fn new(path: &Path, tell: impl FnMut(News) + Send + 'static) -> io::Result<Self> {
         let teller = Arc::new(Teller {
             path: path.to_owned(),
             tell: Mutex::new(tell),
