@@ -302,16 +302,23 @@ fn a_device_that_fails_the_self_test_is_not_trusted() {
     assert_eq!(unasked.unwrap().backend, Backend::Gpu);
 }
 
-/// A scene with mirrors, glass and shadows, some of whose samples are in doubt.
-fn hard_scene() -> Scene {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lit");
-    let text = fs::read(folder.join("mirror_and_glass.txt")).unwrap();
-    let mut scene = load_from("scene", &*text, &folder).unwrap();
+/// Mirrors, glass and shadows, some of whose samples are in doubt; and quadrics that mirror, where many are.
+const SOME: &str = "lit/mirror_and_glass";
+const MANY: &str = "gallery/quadric_chess";
+
+fn small(name: &str) -> Scene {
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut scene = crate::scene::load(&scenes.join(name).with_extension("txt")).unwrap();
     scene.camera.pixeldim = [93, 71];
     scene
 }
 
+fn hard_scene() -> Scene {
+    small(SOME)
+}
+
 fn antialiased(
+    name: &str,
     backend: Backend,
     samples: u32,
     jitter: SamplePattern,
@@ -324,7 +331,7 @@ fn antialiased(
         ..settings(backend)
     };
     let mut rgb = Vec::new();
-    let report = render(&hard_scene(), &wanted, &mut |band| {
+    let report = render(&small(name), &wanted, &mut |band| {
         rgb.extend_from_slice(&band.rgb);
         Ok(())
     });
@@ -340,14 +347,14 @@ fn only_doubtful_samples_are_computed() {
         (40, SamplePattern::Hash),
         (16, SamplePattern::Course),
     ] {
-        let (_, right) = antialiased(Backend::Cpu, samples, jitter, 30);
-        let (report, bytes) = antialiased(Backend::Gpu, samples, jitter, 30);
+        let (_, right) = antialiased(SOME, Backend::Cpu, samples, jitter, 30);
+        let (report, bytes) = antialiased(SOME, Backend::Gpu, samples, jitter, 30);
         let report = report.unwrap();
         assert_eq!((report.backend, &report.revoked), (Backend::Gpu, &None));
         assert!(bytes == right, "{samples} samples, {jitter:?}");
         let computed = |room| {
             leave_room_for(Some(room));
-            let (report, bytes) = antialiased(Backend::Gpu, samples, jitter, 30);
+            let (report, bytes) = antialiased(SOME, Backend::Gpu, samples, jitter, 30);
             leave_room_for(None);
             let report = report.unwrap();
             assert_eq!(report.revoked, None);
@@ -382,11 +389,11 @@ fn only_doubtful_samples_are_computed() {
 /// where one of these pixels is checked: one row a band has a checked pixel in each row.
 #[test]
 fn wrong_parts_are_seen() {
-    let (_, right) = antialiased(Backend::Cpu, 16, SamplePattern::Hash, 71);
+    let (_, right) = antialiased(MANY, Backend::Cpu, 16, SamplePattern::Hash, 71);
     for fault in [Fault::Bit, Fault::Sum] {
         spoil_records(Some(fault));
-        let (few, bytes) = antialiased(Backend::Gpu, 16, SamplePattern::Hash, 71);
-        let (many, _) = antialiased(Backend::Gpu, 16, SamplePattern::Hash, 1);
+        let (few, bytes) = antialiased(MANY, Backend::Gpu, 16, SamplePattern::Hash, 71);
+        let (many, _) = antialiased(MANY, Backend::Gpu, 16, SamplePattern::Hash, 1);
         spoil_records(None);
         let few = few.unwrap();
         assert!(few.revoked.is_some() || bytes != right, "{fault:?}");
