@@ -313,10 +313,6 @@ fn small(name: &str) -> Scene {
     scene
 }
 
-fn hard_scene() -> Scene {
-    small(SOME)
-}
-
 fn antialiased(
     name: &str,
     backend: Backend,

@@ -99,7 +99,7 @@ fn a_fast_picture_ends_with_its_device() {
 /// Several devices and the CPU, in any mix, make the same bytes.
 #[test]
 fn any_mix_of_workers_makes_the_same_bytes() {
-    let (_, right) = antialiased(Backend::Cpu, 3, SamplePattern::Hash, 4);
+    let (_, right) = antialiased(SOME, Backend::Cpu, 3, SamplePattern::Hash, 4);
     for (number, backend) in [(1, Backend::Auto), (2, Backend::Auto), (3, Backend::Gpu)] {
         let devices = devices(number, false);
         for threads in 1..4 {
@@ -110,7 +110,7 @@ fn any_mix_of_workers_makes_the_same_bytes() {
                 ..settings(backend)
             };
             let mut bytes = Vec::new();
-            let report = render_with(&hard_scene(), &wanted, &devices, &mut |band| {
+            let report = render_with(&small(SOME), &wanted, &devices, &mut |band| {
                 bytes.extend_from_slice(&band.rgb);
                 Ok(())
             });
@@ -153,7 +153,7 @@ fn software_is_tried_or_left_out() {
     // The CPU has lanes for this scene.
     assert_eq!(report.backend, Backend::Cpu);
     assert!(report.workers.iter().all(|worker| !worker.is_device()));
-    let mut large = hard_scene();
+    let mut large = small(SOME);
     large.camera.pixeldim = [400, 300];
     let wanted = Settings {
         samples: 4,

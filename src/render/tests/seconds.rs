@@ -119,7 +119,7 @@ fn timed(scene: &Scene, settings: &Settings) -> Timed {
 fn all_time_of_a_picture_is_in_the_phases_of_its_report() {
     let mut unlit = scene();
     unlit.camera.pixeldim = [400, 300];
-    for (lit, scene) in [(false, unlit), (true, hard_scene())] {
+    for (lit, scene) in [(false, unlit), (true, small(SOME))] {
         for samples in [1, 4] {
             for (precision, jitter) in [
                 (Precision::Certified, SamplePattern::Hash),
@@ -146,7 +146,7 @@ fn so_is_that_of_a_picture_on_an_open_device() {
     let gpu = adapters::open(None).unwrap();
     let timed = Timed::new(|| {
         render_live(
-            &hard_scene(),
+            &small(SOME),
             &settings(Backend::Gpu),
             &Live::on(&gpu),
             &mut |_| Ok(()),
