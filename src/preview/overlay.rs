@@ -113,7 +113,12 @@ pub(super) fn leaving(
                 (lose, Leaving::Lose),
                 ("Stay", Leaving::Stay),
             ] {
-                if ui.button(text).clicked() {
+                let button = ui.button(text);
+                // The keyboard is the question's, and begins where nothing is lost.
+                if choice == Leaving::Save && ui.memory(|memory| memory.focused().is_none()) {
+                    button.request_focus();
+                }
+                if button.clicked() {
                     chosen = Some(choice);
                 }
             }
