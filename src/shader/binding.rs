@@ -95,18 +95,21 @@ fn of_lit<T: Record>(packed: &Packed, of: fn(&Lit) -> &Vec<T>) -> Contents<'_> {
     records(packed.lit.as_ref().map_or(&[][..], |lit| of(lit)))
 }
 
-fn objects(packed: &Packed) -> Contents<'_> {
-    // The tables of indices stand behind the objects, in the field `kind`.
+/// What `objects` holds in a scene without lights; nothing in others. The tables of indices stand behind the objects, in
+/// the field `kind`.
+pub(crate) fn objects(packed: &Packed) -> Vec<Object> {
+    if packed.lit.is_some() {
+        return Vec::new();
+    }
     let rows = packed.tables.words.iter().map(|&kind| Object {
         kind,
         ..Object::zeroed()
     });
-    let unlit = packed.lit.is_none();
-    let objects = packed.objects.iter().copied().chain(rows);
-    records(objects.filter(|_| unlit).collect::<Vec<_>>())
+    packed.objects.iter().copied().chain(rows).collect()
 }
 
-fn lit_objects(packed: &Packed) -> Contents<'_> {
+/// What it holds in a scene with lights; nothing in others. Third sides of triangles stand behind the tables.
+pub(crate) fn lit_objects(packed: &Packed) -> Vec<LitObject> {
     let rows = packed.tables.words.iter().map(|&kind| LitObject {
         kind,
         ..LitObject::zeroed()
@@ -115,7 +118,7 @@ fn lit_objects(packed: &Packed) -> Contents<'_> {
         let objects = lit.objects.iter().copied().chain(rows);
         objects.chain(lit.third_sides()).collect()
     };
-    records(packed.lit.as_ref().map(all).unwrap_or_default())
+    packed.lit.as_ref().map(all).unwrap_or_default()
 }
 
 const READ: &str = "storage, read";
@@ -172,10 +175,10 @@ bindings! {
     binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !others(f), None;
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that
     /// `index_table` reads.
-    binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(objects);
+    binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(|p| records(objects(p)));
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that
     /// `index_table` reads, and the third sides of triangles, which `third_side` reads.
-    binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(lit_objects);
+    binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::Lit), Some(|p| records(lit_objects(p)));
     binding 3, "planes", READ, "array<Plane>", "planes",
         |f| f.contains(&Feature::PlaneLoop), Some(|p| records(&p.planes));
     binding 4, "polygons", READ, "array<Polygon>", "finite planes",

@@ -28,12 +28,11 @@ mod vector;
 
 use std::sync::Arc;
 
-use bytemuck::Zeroable as _;
 use fearless_simd::{Level, Simd};
 
 use crate::settings::Settings;
+use crate::shader::binding;
 use crate::shader::pack::Packed;
-use crate::shader::records::{LitObject, Object};
 use scene::{Buffers, Numbers, Scene};
 
 /// Pixels that the widest vectors hold.
@@ -70,7 +69,10 @@ impl Lanes {
         }
         Some(Self {
             numbers: Numbers::new(&packed, settings),
-            buffers: buffers(&packed),
+            buffers: Buffers {
+                objects: binding::objects(&packed),
+                lit_objects: binding::lit_objects(&packed),
+            },
             packed,
             level: Level::new(),
         })
@@ -122,34 +124,6 @@ impl Lanes {
             lit::primary::strip(&scene, first, y, words);
         } else {
             ambient::primary::strip(&scene, first, y, words);
-        }
-    }
-}
-
-/// The objects, and the tables behind them; see `shader::binding`.
-fn buffers(packed: &Packed) -> Buffers {
-    let words = packed.tables.words.iter();
-    match &packed.lit {
-        None => {
-            let rows = words.map(|&kind| Object {
-                kind,
-                ..Object::zeroed()
-            });
-            Buffers {
-                objects: packed.objects.iter().copied().chain(rows).collect(),
-                lit_objects: Vec::new(),
-            }
-        }
-        Some(lit) => {
-            let rows = words.map(|&kind| LitObject {
-                kind,
-                ..LitObject::zeroed()
-            });
-            let objects = lit.objects.iter().copied().chain(rows);
-            Buffers {
-                objects: Vec::new(),
-                lit_objects: objects.chain(lit.third_sides()).collect(),
-            }
         }
     }
 }

@@ -6,7 +6,7 @@ use plumb::shader::bounds::ROUNDING;
 
 use super::support::{BoundStatistics, Rng, TrueRay, run};
 use super::world::{
-    CALL, RayErrors, TruePlane, World, inputs, ray, told, toward_sphere, true_plane,
+    CALL, RayErrors, TruePlane, World, inputs, ray, told, toward_sphere, true_hit, true_plane,
 };
 
 /// Mirrors and panes on a path.
@@ -190,11 +190,7 @@ pub(crate) fn at_spheres(
             continue;
         }
         let (center, radius) = truth[i % truth.len()];
-        let to_center = center - ray.base;
-        let along = to_center.dot(ray.dir);
-        let apart = to_center - along * ray.dir;
-        let root = ((radius - apart.length()) * (radius + apart.length())).sqrt();
-        let hit = ray.base + (along - root) * ray.dir;
+        let hit = ray.base + true_hit(ray, center, radius).1 * ray.dir;
         let normal = (hit - center) / radius;
         let mirrored = ray.dir - 2.0 * normal.dot(ray.dir) * normal;
         let found = DVec3::from_slice(&dir[..3]);

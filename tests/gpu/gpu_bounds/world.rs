@@ -464,6 +464,15 @@ pub(crate) fn toward_sphere(
     ray(rng, errors, base, dir, across)
 }
 
+/// r² less the square of how far the ray passes from the center, and how far along it the nearer hit is.
+pub(crate) fn true_hit(ray: &TrueRay, center: DVec3, radius: f64) -> (f64, f64) {
+    let to_center = center - ray.base;
+    let along = to_center.dot(ray.dir);
+    let apart = (to_center - along * ray.dir).length();
+    let disc = (radius - apart) * (radius + apart);
+    (disc, along - disc.max(0.0).sqrt())
+}
+
 /// Intersections with spheres, and the normals and places where they are certain.
 pub(crate) fn spheres(
     gpu: &Gpu,
@@ -495,19 +504,14 @@ pub(crate) fn spheres(
     let [mut intersections, mut normals, mut points] = names.map(BoundStatistics::new);
     for (i, ray) in rays.iter().enumerate() {
         let (center, radius) = truth[i % records.len()];
-        let to_center = center - ray.base;
-        let along = to_center.dot(ray.dir);
-        let apart = to_center - along * ray.dir;
-        let disc = (radius - apart.length()) * (radius + apart.length());
-        let root = disc.max(0.0).sqrt();
-        let t = along - root;
+        let (disc, t) = true_hit(ray, center, radius);
         if judge(
             &mut intersections,
             &answers[4 * i..],
             disc > 0.0 && t > 0.0,
             t,
         ) {
-            let normal = -(apart + root * ray.dir) / radius;
+            let normal = (ray.base + t * ray.dir - center) / radius;
             let [x, y, z, error] = answers[4 * i + 2].map(f64::from);
             normals.error((DVec3::new(x, y, z) - normal).length(), error);
             place(&mut points, answers[4 * i + 3], ray.base + t * ray.dir);

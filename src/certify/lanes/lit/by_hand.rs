@@ -5,8 +5,8 @@ use fearless_simd::Simd;
 pub(super) use super::primary::find_closest_object;
 use super::text::constants::{NOTHING, T_MAX};
 use super::text::{
-    self, Range, SecondaryHit, SecondaryRay, Shadow, State, closest_approach, nearer_secondary,
-    occludes, plane_hits_from, quadric_hits_from, sphere_hits_from,
+    self, Intersection, Range, SecondaryHit, SecondaryRay, Shadow, State, closest_approach,
+    nearer_secondary, occludes, plane_hits_from, quadric_hits_from, sphere_hits_from,
 };
 use super::walk::Walk;
 use crate::certify::lanes::scene::Scene;
@@ -36,9 +36,8 @@ pub(super) fn closest_hit<'a, S: Simd>(
             }
             for quadric in scene.quadrics {
                 let hits = quadric_hits_from(scene, on, quadric, ray, range);
-                let [object, group] =
-                    [quadric.object, quadric.group].map(|number| scene.u32(number));
-                nearer_secondary(scene, &mut closest, hits, object, group, range);
+                let numbers = [quadric.object, quadric.group];
+                takes(scene, &mut closest, hits, numbers, range);
             }
             for sphere in lit.spheres {
                 if all_miss(scene, on, sphere, ray) {
@@ -68,6 +67,19 @@ pub(super) fn closest_hit<'a, S: Simd>(
     )
 }
 
+/// Takes what is met of an object if it is nearer: with the object's number, and its surface's.
+#[inline(always)]
+fn takes<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    closest: &mut SecondaryHit<S>,
+    hits: Intersection<S>,
+    numbers: [u32; 2],
+    range: Range<S>,
+) {
+    let [object, group] = numbers.map(|number| scene.u32(number));
+    nearer_secondary(scene, closest, hits, object, group, range);
+}
+
 #[inline(always)]
 fn closer_plane<'a, S: Simd>(
     scene: &'a Scene<'a, S>,
@@ -77,8 +89,7 @@ fn closer_plane<'a, S: Simd>(
     closest: &mut SecondaryHit<S>,
 ) {
     let hits = plane_hits_from(scene, plane, ray, range);
-    let [object, group] = [plane.object, plane.group].map(|number| scene.u32(number));
-    nearer_secondary(scene, closest, hits, object, group, range);
+    takes(scene, closest, hits, [plane.object, plane.group], range);
 }
 
 #[inline(always)]
@@ -90,8 +101,7 @@ fn closer_sphere<'a, S: Simd>(
     closest: &mut SecondaryHit<S>,
 ) {
     let hits = sphere_hits_from(scene, sphere, ray, range);
-    let [object, group] = [sphere.object, sphere.group].map(|number| scene.u32(number));
-    nearer_secondary(scene, closest, hits, object, group, range);
+    takes(scene, closest, hits, [sphere.object, sphere.group], range);
 }
 
 /// Whether all rays pass a sphere so far away that its own test would say so: r² − apart is then below −disc_error,
