@@ -2,12 +2,16 @@
 //!
 //! Learns from what the last pictures took; the worker asks.
 
+use crate::scene::Scene;
+
 /// A picture that takes no longer than so many seconds is rendered as large as it is.
 const QUICK: f64 = 0.15;
 /// A smaller one is made to take about so many seconds.
 const AIM: f64 = 0.08;
 /// Pictures are made smaller at most so many times in each direction.
 const MOST: u32 = 16;
+/// Most pixels that are shown; a larger picture is shown smaller.
+pub(super) const MOST_PIXELS: u64 = 16 << 20;
 
 /// What pictures of a scene took lately.
 #[derive(Debug, Clone, Copy, Default)]
@@ -74,6 +78,29 @@ impl AdaptiveResolution {
         let whole = seconds / share.clamp(1e-3, 1.0);
         self.whole = Some(whole.max(1.01 * QUICK));
     }
+}
+
+/// The scene with a picture so many times smaller in each direction; none if that is the scene itself.
+pub(super) fn sized(scene: &Scene, smaller: u32) -> Option<Scene> {
+    (smaller > 1).then(|| {
+        let mut scene = scene.clone();
+        scene.camera.pixeldim = scene.camera.pixeldim.map(|pixels| pixels.div_ceil(smaller));
+        scene
+    })
+}
+
+/// How many times smaller in each direction a picture has to be to have so many pixels at most.
+pub(super) fn smaller(pixeldim: [u32; 2], most: u64) -> u32 {
+    let pixels = |smaller: u32| {
+        let [width, height] = pixeldim.map(|pixels| u64::from(pixels.div_ceil(smaller)));
+        width * height
+    };
+    let [width, height] = pixeldim.map(f64::from);
+    let mut smaller = ((width * height / most as f64).sqrt() as u32).max(1);
+    while pixels(smaller) > most {
+        smaller += 1;
+    }
+    smaller
 }
 
 #[cfg(test)]
@@ -149,5 +176,28 @@ mod tests {
         resolution.took(1, 0.05);
         resolution.took(1, 3.0);
         assert!(resolution.first() > 4);
+    }
+
+    #[test]
+    fn pictures_are_as_large_as_they_may_be() {
+        assert_eq!(smaller([640, 480], MOST_PIXELS), 1);
+        assert_eq!(smaller([4096, 4096], MOST_PIXELS), 1);
+        assert_eq!(smaller([4097, 4096], MOST_PIXELS), 2);
+        for pixeldim in [
+            [1_000_000, 1_000_000],
+            [1_000_000, 17],
+            [3, 999_999],
+            [32768, 32768],
+        ] {
+            let k = smaller(pixeldim, MOST_PIXELS);
+            let pixels = |k: u32| {
+                pixeldim
+                    .iter()
+                    .map(|n: &u32| u64::from(n.div_ceil(k)))
+                    .product::<u64>()
+            };
+            assert!(pixels(k) <= MOST_PIXELS, "{pixeldim:?} {k}");
+            assert!(k == 1 || pixels(k - 1) > MOST_PIXELS, "{pixeldim:?} {k}");
+        }
     }
 }

@@ -67,6 +67,8 @@ pub(super) struct App {
     next: Option<PathBuf>,
     /// Pictures of wishes up to this are of a scene that was shown before.
     since: u64,
+    /// The wish that is fulfilled to the last byte, while nothing moves.
+    rests: u64,
     /// The picture that is shown.
     picture: Option<PreviewPicture>,
     /// Why the newest wish could not be fulfilled.
@@ -160,6 +162,7 @@ impl App {
             chooser: None,
             next: None,
             since: 0,
+            rests: 0,
             picture: None,
             failed: None,
             showing: Showing::default(),
@@ -257,6 +260,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        self.waiting.drawn();
         self.take_keys(&context);
         self.panels.room = ui.max_rect().size();
         let room = self.panels.room;

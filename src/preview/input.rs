@@ -79,12 +79,29 @@ pub(super) struct Waiting {
     events: VecDeque<Event>,
     /// How many buttons of the mouse are held, as far as egui knows.
     held: usize,
+    /// How many events were left for a frame that has not been drawn, and how many buttons were held before them.
+    left: (usize, usize),
 }
 
 impl Waiting {
     /// Takes the events that came, and leaves those of them and of earlier ones that are this frame's.
     pub(super) fn take_turns(&mut self, events: &mut Vec<Event>) {
+        let (left, held) = std::mem::take(&mut self.left);
+        if left > 0 {
+            // A window that nobody sees draws no frame: what was left for it comes again, before what waits.
+            for event in events.drain(..left.min(events.len())).rev() {
+                self.events.push_front(event);
+            }
+            self.held = held;
+        }
         self.events.extend(events.drain(..));
+        let held = self.held;
+        self.choose(events);
+        self.left = (events.len(), held);
+    }
+
+    /// Leaves those that are one frame's.
+    fn choose(&mut self, events: &mut Vec<Event>) {
         let in_turn = self.events.len() <= MOST;
         let mut last = None;
         while let Some(event) = self.events.pop_front() {
@@ -107,6 +124,11 @@ impl Waiting {
             }
             events.push(event);
         }
+    }
+
+    /// The frame that events were left for is drawn.
+    pub(super) fn drawn(&mut self) {
+        self.left = Default::default();
     }
 
     /// Whether some wait for the next frame.
@@ -185,10 +207,37 @@ mod tests {
             waiting.take_turns(&mut events);
             assert_eq!(&events, frame, "{i}");
             assert_eq!(waiting.is_empty(), i + 1 == frames.len(), "{i}");
+            waiting.drawn();
             events.clear();
         }
         waiting.take_turns(&mut events);
         assert!(events.is_empty());
+    }
+
+    #[test]
+    fn what_no_frame_has_taken_comes_again_in_order() {
+        let frames = [
+            vec![moved(1.0), button(1.0, true)],
+            vec![moved(2.0)],
+            vec![key(Key::S, true)],
+            vec![button(2.0, false)],
+            vec![moved(3.0), key(Key::T, true)],
+        ];
+        let mut waiting = Waiting::default();
+        // Of a window that is not seen, what was left is there again with what came since.
+        let mut events = frames[..2].concat();
+        for later in [&frames[2..4].concat()[..], &[], &frames[4]] {
+            waiting.take_turns(&mut events);
+            assert_eq!(events, frames[0]);
+            events.extend_from_slice(later);
+        }
+        for (i, frame) in frames.iter().enumerate() {
+            waiting.take_turns(&mut events);
+            assert_eq!(&events, frame, "{i}");
+            waiting.drawn();
+            events.clear();
+        }
+        assert!(waiting.is_empty());
     }
 
     #[test]
@@ -209,9 +258,11 @@ mod tests {
         let mut events = vec![turned.clone(), key(Key::A, true)];
         waiting.take_turns(&mut events);
         assert_eq!(events, [turned]);
+        waiting.drawn();
         let mut events = vec![key(Key::B, true), moved(2.0), Event::WindowFocused(false)];
         waiting.take_turns(&mut events);
         assert_eq!(events, [key(Key::A, true)]);
+        waiting.drawn();
         events.clear();
         waiting.take_turns(&mut events);
         let rest = [key(Key::B, true), moved(2.0), Event::WindowFocused(false)];

@@ -58,6 +58,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui;
 use eframe::egui_wgpu;
 
+use crate::cores;
 use crate::gpu::GpuError;
 use crate::gpu::adapters::{self, Opened};
 use crate::gpu::device::Gpu;
@@ -216,6 +217,11 @@ fn open(wanted: Option<&str>) -> Result<(Arc<Gpu>, Opened), PreviewError> {
             .name("open".into())
             .spawn_scoped(scope, || {
                 priority::lower();
+                // So are those that plumb's own work shares, whoever starts them. If there are none, each picture says
+                // why.
+                if cores::start(None).is_ok() {
+                    rayon::broadcast(|_| priority::lower());
+                }
                 adapters::open_for_window(wanted)
             })
             .map_err(window)?

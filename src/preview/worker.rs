@@ -1,5 +1,5 @@
 //! The thread that renders what the window wants to show: at once and small if need be, then whole if that is much
-//! quicker than what comes last, the certified picture.
+//! quicker than what comes last, the certified picture. Where the CPU renders, every whole picture is certified.
 //!
 //! Between the window, which leaves [`Wish`]es, and `render`, which makes the pictures. The newest wish wins: what is
 //! under way for an older one is given up, but for the first picture of each, without which a steady drag would show
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::adaptive_resolution::AdaptiveResolution;
+use super::adaptive_resolution::{AdaptiveResolution, MOST_PIXELS, sized, smaller};
 use super::canvases::Canvases;
 use super::draw::Pixels;
 use super::latest::{LatestReceiver, LatestSender, latest};
@@ -24,14 +24,12 @@ use crate::gpu::pipeline::Compiled;
 use crate::render::{self, Backend, Live, Precision, Report, Settings, render_live};
 use crate::scene::Scene;
 
-/// A picture is certified once nothing was asked for so long.
+/// Nothing moves once nothing was asked for so long: a picture is certified then, if it is not yet.
 pub(super) const STILL: Duration = Duration::from_millis(150);
 /// Seconds that a dispatch is to take: the window's own frames wait behind two of them.
 const DISPATCH: f64 = 0.015;
 /// A first picture is not given up for a newer one before so many seconds.
 const FIRST: f64 = 0.25;
-/// Most pixels that are shown; a larger picture is shown smaller.
-const MOST: u64 = 16 << 20;
 
 /// What is to be shown.
 #[derive(Debug, Clone)]
@@ -72,6 +70,8 @@ pub(super) struct PreviewPicture {
 pub(super) enum News {
     /// A picture is there.
     Picture(Box<PreviewPicture>),
+    /// The wish of this number is fulfilled to the last byte, and nothing moves.
+    Rests(u64),
     /// A wish cannot be fulfilled.
     Failed {
         /// The number of the wish.
@@ -194,19 +194,58 @@ impl Work {
             Arc::new(wish.changes.apply(&wish.scene))
         };
         self.settings = wish.rendering.over(&self.settings);
-        let most = MOST.min(self.canvases.most());
+        let most = MOST_PIXELS.min(self.canvases.most());
         let whole = scene.camera.pixeldim;
         let task = PreviewTask {
             number,
             scene: sized(&scene, smaller(whole, most)).map_or(scene, Arc::new),
             whole,
         };
+        let (first, mut precision) = self.make_first(&task, wish.since, tell)?;
+        // Where nothing moves the certified picture is next, and the more so where a fast one takes as long: its shader
+        // is one for all viewpoints.
+        if first > 1 && self.resolution.is_whole_worth_it() {
+            let started = Instant::now();
+            let picture = self.make(&task, 1, Precision::Fast, |old| old)?;
+            self.resolution.took(1, started.elapsed().as_secs_f64());
+            precision = picture.precision;
+            tell(done(picture, wish.since.elapsed()));
+        }
+        if precision != Precision::Certified {
+            self.progress.wait();
+        }
+        if !self.receiver.rest(number, wish.since + STILL) {
+            return Ok(());
+        }
+        if precision != Precision::Certified {
+            let started = Instant::now();
+            let picture = self.make(&task, 1, Precision::Certified, |old| old)?;
+            let seconds = started.elapsed().as_secs_f64();
+            match picture.report.backend {
+                // There the first pictures are made as this one is.
+                Backend::Cpu => self.resolution.took(1, seconds),
+                _ => self.resolution.took_certified(seconds),
+            }
+            tell(done(picture, started.elapsed()));
+        }
+        tell(News::Rests(number));
+        Ok(())
+    }
+
+    /// Makes a picture that is there at once, and tells it. Returns how many times smaller it had to be, and what its
+    /// bytes are.
+    fn make_first(
+        &mut self,
+        task: &PreviewTask,
+        since: Instant,
+        tell: &mut impl FnMut(News),
+    ) -> Result<(u32, Precision), Unmade> {
         let mut first = self.resolution.first();
         let patience = self.resolution.patience();
         loop {
             let started = Instant::now();
             let patience = patience.filter(|_| first == 1);
-            let made = self.make(&task, first, Precision::Fast, |old| {
+            let made = self.make(task, first, Precision::Fast, |old| {
                 let seconds = started.elapsed().as_secs_f64();
                 patience.is_some_and(|most| seconds > most) || old && seconds > FIRST
             });
@@ -214,37 +253,20 @@ impl Work {
             match made {
                 Ok(picture) => {
                     self.resolution.took(first, seconds);
-                    tell(done(picture, wish.since.elapsed()));
-                    break;
+                    let precision = picture.precision;
+                    tell(done(picture, since.elapsed()));
+                    return Ok((first, precision));
                 }
                 Err(Unmade::GivenUp(share)) if first == 1 => {
                     self.resolution.gave_up(seconds, share);
-                    if self.receiver.is_old(number) {
-                        return Ok(());
+                    if self.receiver.is_old(task.number) {
+                        return Err(Unmade::GivenUp(share));
                     }
                     first = self.resolution.first();
                 }
                 Err(unmade) => return Err(unmade),
             }
         }
-        // Where nothing moves the certified picture is next, and the more so where a fast one takes as long: its shader
-        // is one for all viewpoints.
-        if first > 1 && self.resolution.is_whole_worth_it() {
-            let started = Instant::now();
-            let picture = self.make(&task, 1, Precision::Fast, |old| old)?;
-            self.resolution.took(1, started.elapsed().as_secs_f64());
-            tell(done(picture, wish.since.elapsed()));
-        }
-        self.progress.wait();
-        if !self.receiver.rest(number, wish.since + STILL) {
-            return Ok(());
-        }
-        let started = Instant::now();
-        let picture = self.make(&task, 1, Precision::Certified, |old| old)?;
-        self.resolution
-            .took_certified(started.elapsed().as_secs_f64());
-        tell(done(picture, started.elapsed()));
-        Ok(())
     }
 
     /// Renders a picture, `smaller` times smaller in each direction; `stop` is told whether the wish is old.
@@ -302,7 +324,11 @@ impl Work {
                         verdicts,
                     }),
                     canvas: begun,
-                    precision,
+                    // The CPU's bytes are certified, and so is the picture if it has all of its pixels.
+                    precision: match report.backend {
+                        Backend::Cpu if smaller == 1 => Precision::Certified,
+                        _ => precision,
+                    },
                     report,
                     seconds: 0.0,
                 }),
@@ -333,55 +359,4 @@ fn done(picture: PreviewPicture, took: Duration) -> News {
         seconds: took.as_secs_f64(),
         ..picture
     }))
-}
-
-/// The scene with a picture so many times smaller in each direction; none if that is the scene itself.
-fn sized(scene: &Scene, smaller: u32) -> Option<Scene> {
-    (smaller > 1).then(|| {
-        let mut scene = scene.clone();
-        scene.camera.pixeldim = scene.camera.pixeldim.map(|pixels| pixels.div_ceil(smaller));
-        scene
-    })
-}
-
-/// How many times smaller in each direction a picture has to be to have so many pixels at most.
-fn smaller(pixeldim: [u32; 2], most: u64) -> u32 {
-    let pixels = |smaller: u32| {
-        let [width, height] = pixeldim.map(|pixels| u64::from(pixels.div_ceil(smaller)));
-        width * height
-    };
-    let [width, height] = pixeldim.map(f64::from);
-    let mut smaller = ((width * height / most as f64).sqrt() as u32).max(1);
-    while pixels(smaller) > most {
-        smaller += 1;
-    }
-    smaller
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_are_as_large_as_they_may_be() {
-        assert_eq!(smaller([640, 480], MOST), 1);
-        assert_eq!(smaller([4096, 4096], MOST), 1);
-        assert_eq!(smaller([4097, 4096], MOST), 2);
-        for pixeldim in [
-            [1_000_000, 1_000_000],
-            [1_000_000, 17],
-            [3, 999_999],
-            [32768, 32768],
-        ] {
-            let k = smaller(pixeldim, MOST);
-            let pixels = |k: u32| {
-                pixeldim
-                    .iter()
-                    .map(|n: &u32| u64::from(n.div_ceil(k)))
-                    .product::<u64>()
-            };
-            assert!(pixels(k) <= MOST, "{pixeldim:?} {k}");
-            assert!(k == 1 || pixels(k - 1) > MOST, "{pixeldim:?} {k}");
-        }
-    }
 }

@@ -100,7 +100,8 @@ impl From<Halt> for Error {
 /// What a picture is rendered with by whoever renders many: a device that is open, and a say in whether it goes on.
 #[derive(Clone, Copy)]
 pub struct Live<'a> {
-    /// The device; `Settings::adapter` means nothing then.
+    /// The device. It is left out where it is software that `Settings::adapter` does not name, and the CPU makes the
+    /// picture many pixels at once: the bytes are certified then, whatever precision was asked for.
     pub gpu: &'a Gpu,
     /// Where the picture is shown, on the GPU: all pixels that the GPU makes are copied there.
     pub canvas: Option<&'a Canvas>,

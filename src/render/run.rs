@@ -20,6 +20,7 @@ use super::turns::Turn;
 use super::{Backend, Band, Emit, Error, Live, Precision, install_hint};
 use crate::gpu::GpuError;
 use crate::gpu::candidates::{is_named, may_be_hardware};
+use crate::gpu::device::Gpu;
 use crate::stopwatch::{Phase, Stopwatch};
 
 /// Where devices come from.
@@ -47,6 +48,15 @@ impl Rendering<'_> {
         let why = "certified values are computed on the CPU, all of them; --precision fast takes the GPU's own f32";
         self.tell(|told| told.left.push(why.into()));
         Ok(false)
+    }
+
+    /// Whether the CPU renders although there is this device: it is software, nobody named it, and the CPU makes the
+    /// picture quicker.
+    fn leaves_out(&self, gpu: &Gpu) -> bool {
+        gpu.software
+            && self.settings.backend == Backend::Auto
+            && !is_named(self.settings.adapter.as_deref())
+            && self.is_quick_on_cpu()
     }
 
     /// What can be done for a picture while another one is rendered: packing the scene, and compiling its shader for
@@ -104,6 +114,10 @@ impl Rendering<'_> {
         }
         let found = match source {
             _ if !wants_devices => Vec::new(),
+            Source::Live(live) if self.leaves_out(live.gpu) => {
+                self.tell(|told| told.left_out = Some(live.gpu.name.clone()));
+                Vec::new()
+            }
             Source::Live(live) => vec![Here::Live(live)],
             Source::Devices(devices) if waits => self.found(devices, &news)?,
             Source::Devices(_) => Vec::new(),

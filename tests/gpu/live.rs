@@ -198,6 +198,7 @@ fn pictures_of_a_moving_camera_are_right() {
             let picture = |precision, compiled| {
                 let settings = Settings {
                     precision,
+                    backend: Backend::Gpu,
                     ..Settings::default()
                 };
                 let live = Live {

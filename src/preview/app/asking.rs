@@ -62,7 +62,7 @@ impl App {
             .is_some_and(|(number, _)| *number == picture.number);
         let objects =
             (self.side.hovered.is_some() || self.side.selection.entity().is_some()) && !seen;
-        let still = picture.precision == Precision::Certified;
+        let still = picture.number == self.rests;
         let clicked = self.clicked.is_some();
         let state = self.shared.lock();
         let (session, is_newest) = (&state.session, state.wished == picture.number);

@@ -62,6 +62,7 @@ impl App {
                         self.failed = Some(why);
                     }
                 }
+                Event::Rendered(worker::News::Rests(number)) => self.rests = number,
                 Event::Browsed(purpose, path) => self.browsed(purpose, path),
                 Event::Inspected(answer) => self.answered(answer),
                 Event::Saved(saved) => {

@@ -177,3 +177,45 @@ fn software_is_tried_or_left_out() {
     }
     assert!(hashes[0] == hashes[1]);
 }
+
+/// Software that somebody else has opened is left out where the CPU makes many pixels at once, whatever was asked for;
+/// not where it was asked for by name, or the CPU would make one pixel after the other.
+#[test]
+fn open_software_is_left_out_where_the_cpu_is_quicker() {
+    let mut gpu = adapters::open(None).unwrap();
+    gpu.software = true;
+    let made = |wanted: Settings| {
+        let mut rgb = Vec::new();
+        let report = render_live(&scene(), &wanted, &Live::on(&gpu), &mut |band| {
+            rgb.extend_from_slice(&band.rgb);
+            Ok(())
+        });
+        (report.unwrap(), rgb)
+    };
+    for precision in [Precision::Certified, Precision::Fast] {
+        let (report, bytes) = made(Settings {
+            precision,
+            ..settings(Backend::Auto)
+        });
+        assert_eq!(report.backend, Backend::Cpu);
+        assert_eq!(report.left_out.as_ref(), Some(&gpu.name));
+        assert!(bytes == right(), "{precision:?}");
+    }
+    for wanted in [
+        settings(Backend::Gpu),
+        Settings {
+            samples: 4,
+            ..settings(Backend::Auto)
+        },
+        Settings {
+            adapter: Some(gpu.name.clone()),
+            ..settings(Backend::Auto)
+        },
+    ] {
+        let (report, _) = made(wanted);
+        assert_eq!(
+            (report.backend, report.adapter.as_ref(), report.left_out),
+            (Backend::Gpu, Some(&gpu.name), None)
+        );
+    }
+}

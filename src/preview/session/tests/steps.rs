@@ -63,23 +63,47 @@ fn every_kind_of_change_is_undone_byte_for_byte_and_done_again() {
             "{target:?} {:?}",
             session.said
         );
-        save(&mut session).unwrap();
-        let after = text(&session);
-        assert_ne!(after, before, "{target:?}");
-        // What the watcher tells of it is no news, and nothing is forgotten over it.
-        assert!(!tell(&mut session, &after));
-        assert!(session.step_back(Direction::Undo), "{target:?}");
-        assert_eq!(session.value(target), Some(value));
-        save(&mut session).unwrap();
-        assert_eq!(text(&session), before, "{target:?}");
-        assert!(session.step_back(Direction::Redo));
-        save(&mut session).unwrap();
-        assert_eq!(text(&session), after, "{target:?}");
-        assert!(session.step_back(Direction::Undo));
-        save(&mut session).unwrap();
-        assert_eq!(text(&session), before);
-        assert!(session.unsaved().is_empty());
+        undone_and_done_again(&mut session, target, value, &before);
     }
+}
+
+/// Saves, undoes and redoes the change that was made to a file with this text, where the target had this value.
+fn undone_and_done_again(session: &mut Session, target: Target, value: Value, before: &str) {
+    save(session).unwrap();
+    let after = text(session);
+    assert_ne!(after, before, "{target:?}");
+    // What the watcher tells of it is no news, and nothing is forgotten over it.
+    assert!(!tell(session, &after));
+    assert!(session.step_back(Direction::Undo), "{target:?}");
+    assert_eq!(session.value(target), Some(value));
+    save(session).unwrap();
+    assert_eq!(text(session), before, "{target:?}");
+    assert!(session.step_back(Direction::Redo));
+    save(session).unwrap();
+    assert_eq!(text(session), after, "{target:?}");
+    assert!(session.step_back(Direction::Undo));
+    save(session).unwrap();
+    assert_eq!(text(session), before);
+    assert!(session.unsaved().is_empty());
+}
+
+#[test]
+fn leaving_out_is_undone_byte_for_byte_and_done_again() {
+    // A triangle's point, which the scene of all kinds does not give.
+    let all = ALL
+        .replace("texture none { filename no.ppm }\n", "")
+        .replace("normal 0 0 1. }", "normal 0 0 1. point 1 1. 9 }");
+    let (_folder, mut session) = session(&all);
+    let mut names = Vec::new();
+    for target in all_targets(&session.good().unwrap().scene) {
+        let value = session.value(target).unwrap();
+        // What has to be given is refused.
+        if session.set(target, Value::LEFT_OUT, Step::Alone) {
+            names.push(target.attribute());
+            undone_and_done_again(&mut session, target, value, &all);
+        }
+    }
+    assert_eq!(names, ["xdir", "normal", "point", "lower", "upper"]);
 }
 
 #[test]
