@@ -17,7 +17,8 @@ pub(super) fn kind(picture: &PreviewPicture) -> String {
     if times > 1 {
         kind.push_str(&format!(", 1/{times} of the resolution"));
     }
-    if picture.report.backend == Backend::Cpu {
+    // Where software is left out that is as it should be.
+    if picture.report.backend == Backend::Cpu && picture.report.left_out.is_none() {
         kind.push_str(", on the CPU");
     }
     if picture.whole != [width, height] {

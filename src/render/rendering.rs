@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::Settings;
 use super::bag::Bag;
 use super::report::Told;
+use super::{Precision, Settings};
 use crate::certify::lanes::{LANES, Lanes};
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
@@ -144,19 +144,27 @@ impl<'a> Rendering<'a> {
     /// The scene rounded to f32, for devices and lanes alike.
     pub(super) fn packed(&self) -> Arc<Packed> {
         // On the thread that asks: one of those that were asked for may be waiting for this, and be the only one.
-        let pack = || {
-            Arc::new(Packed::prepared(
-                self.decider.exact_tracer().bounded(),
-                self.scene,
-                self.settings,
-            ))
-        };
-        Arc::clone(self.packed.get_or_init(pack))
+        Arc::clone(self.packed.get_or_init(|| self.pack(self.settings)))
+    }
+
+    fn pack(&self, settings: &Settings) -> Arc<Packed> {
+        let prepared = self.decider.exact_tracer().bounded();
+        Arc::new(Packed::prepared(prepared, self.scene, settings))
     }
 
     /// What the CPU does as many pixels at once as its vectors hold, if it does.
     pub(super) fn lanes(&self) -> Option<&Lanes> {
-        let new = || Lanes::new(self.settings, || self.packed());
+        let new = || match self.settings.precision {
+            Precision::Certified => Lanes::new(self.settings, || self.packed()),
+            // A fast picture is packed without what bounds lean on, and the CPU's bytes are certified in any case.
+            Precision::Fast => {
+                let certified = Settings {
+                    precision: Precision::Certified,
+                    ..self.settings.clone()
+                };
+                Lanes::new(&certified, || self.pack(&certified))
+            }
+        };
         self.lanes.get_or_init(|| self.on_threads(new)).as_ref()
     }
 

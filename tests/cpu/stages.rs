@@ -9,7 +9,7 @@ use plumb::jitter::{self, Sampling};
 use plumb::prepare::{Prepared, ViewParameters};
 use plumb::real::{Bounded, Lazy, Real};
 use plumb::scene::{Scene, load_from};
-use plumb::settings::Settings;
+use plumb::settings::{Backend, Precision, Settings};
 
 use crate::common;
 
@@ -252,4 +252,23 @@ fn of_many_spheres_only_those_near_the_ray_are_made_exact() {
         }
     }
     assert!(exact > 0, "no ray is tangent");
+}
+
+/// What precision asks of a device's bytes does not change the CPU's: a scene packed for fast pictures has not all that
+/// the bounds of many pixels at once lean on.
+#[test]
+fn the_cpus_bytes_are_certified_in_fast_pictures_too() {
+    // Without that some pixels of these are sure and wrong.
+    for name in ["gallery/pplane_slanted.txt", "hard/pplane_2_floor_tie.txt"] {
+        let mut scene = common::read(&common::scenes().join(name));
+        scene.camera.pixeldim = [160, 120];
+        let [certified, fast] = [Precision::Certified, Precision::Fast].map(|precision| {
+            let settings = Settings {
+                precision,
+                ..common::on(Backend::Cpu)
+            };
+            common::picture(&scene, &settings).0
+        });
+        assert!(fast == certified, "{name}");
+    }
 }

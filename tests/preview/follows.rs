@@ -23,15 +23,18 @@ fn the_pixels_on_the_screen_are_the_rendered_bytes() {
         ("lit/painting_room.txt", &["--adapter", &named]),
     ] {
         let (path, scene) = small(name);
-        let options = [&["--size", &size], options].concat();
-        let mut program = open(&display, &path, &options);
+        let mut command = command(&path, &[&["--size", &size], options].concat());
+        command.env("RUST_LOG", "error,plumb=info");
+        let mut program = Program::start(&display, command);
+        program.window.focus();
         program.wait(name, |window| {
             window.title().contains("certified").then_some(())
         });
-        let is_named = options.contains(&"--adapter");
-        assert!(!(is_named && program.window.title().contains("CPU")));
         wait_for_picture(&mut program, name, &picture(&scene));
-        close(program);
+        let ended = program.close();
+        assert_eq!(ended.status.code(), Some(0));
+        let by_device = ended.said.contains("decided on the CPU");
+        assert!(by_device || options.is_empty(), "{}", ended.said);
     }
 }
 

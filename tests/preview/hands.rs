@@ -3,6 +3,7 @@
 use image::{Rgb, RgbImage};
 use plumb::certify::DecidedBy;
 use plumb::certify::verdict::color;
+use plumb::gpu::adapters;
 use plumb::render::{Backend, Settings, render};
 
 use crate::program::Program;
@@ -174,6 +175,8 @@ fn what_decided_each_pixel_is_painted_over_the_picture() {
     let display = Display::start(1400, 900);
     // A scene with borders on pixels, which take exact arithmetic.
     let (path, scene) = small("hard/tied_lines.txt");
+    // Named, or the CPU may render in place of software, and decide otherwise.
+    let named = adapters::find(None).unwrap().get_info().name;
     let settings = Settings {
         verdicts: true,
         backend: Backend::Gpu,
@@ -190,7 +193,8 @@ fn what_decided_each_pixel_is_painted_over_the_picture() {
         "nothing to be painted"
     );
     let size = format!("{}x{}", SIZE[0], SIZE[1]);
-    let mut program = open(&display, &path, &["--size", &size]);
+    let options = ["--size", &size, "--adapter", &named];
+    let mut program = open(&display, &path, &options);
     let good = picture(&scene);
     wait_for_picture(&mut program, "a picture", &good);
     // So large that the legend lies beside the picture, not on it.
