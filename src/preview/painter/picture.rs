@@ -71,25 +71,33 @@ pub(super) fn drawn(draw: &Draw, area: Part) -> Vec<u32> {
     let last = across.iter().flat_map(|tap| tap.of.last());
     let end = last.map(|(x, _)| x + 1).max().unwrap_or(0) as usize;
     let columns = draw.pixels.size[0] as usize;
-    let mut sums = vec![0.0_f32; 3 * (end - first)];
+    let mut means = vec![0.0_f32; 3 * (end - first)];
+    let mut last: &[(u32, f32)] = &[];
     for line in &down {
+        // Where the picture has fewer rows than the window, many of these are alike.
+        if line.of == last {
+            pixels.extend_from_within(pixels.len() - across.len()..);
+            continue;
+        }
+        last = &line.of;
         // First the mean down each column of the picture, then along the row.
-        sums.fill(0.0);
+        means.fill(0.0);
         for &(y, weight) in &line.of {
             let start = y as usize * columns;
-            add(draw, start + first..start + end, weight, &mut sums);
+            add(draw, start + first..start + end, weight, &mut means);
         }
-        for tap in &across {
-            let [mut r, mut g, mut b] = [0.5; 3];
+        let means = means.as_chunks::<3>().0;
+        pixels.extend(across.iter().map(|tap| {
+            let mut sum = [0.5; 3];
             for &(x, weight) in &tap.of {
-                let weight = weight / (tap.weights * line.weights);
-                let at = 3 * (x as usize - first);
-                r += weight * sums[at];
-                g += weight * sums[at + 1];
-                b += weight * sums[at + 2];
+                let mean = means[x as usize - first];
+                for i in 0..3 {
+                    sum[i] += weight * mean[i];
+                }
             }
-            pixels.push(u32::from_le_bytes([r as u8, g as u8, b as u8, 255]));
-        }
+            let [r, g, b] = sum.map(|sum| sum as u8);
+            u32::from_le_bytes([r, g, b, 255])
+        }));
     }
     if let Some(outlined) = &draw.outlined {
         outline(draw, outlined, area, &mut pixels);
@@ -116,10 +124,9 @@ fn add(draw: &Draw, pixels: Range<usize>, weight: f32, sums: &mut [f32]) {
     }
 }
 
-/// Which columns (or rows) of the picture make one of the window's, and how much of each.
+/// Which columns (or rows) of the picture make one of the window's, and what share of it each is.
 struct Taps {
     of: Vec<(u32, f32)>,
-    weights: f32,
 }
 
 impl Taps {
@@ -130,7 +137,7 @@ impl Taps {
         if draw.placed.zoom >= 1.0 {
             let pixel = pixel_at(draw, axis, at).unwrap_or(size - 1);
             of.push((place(pixel, size, has), 1.0));
-            return Self { of, weights: 1.0 };
+            return Self { of };
         }
         let (zoom, size_f) = (draw.placed.zoom as f32, size as f32);
         let first = (at - draw.placed.origin[axis]) as f32 / zoom;
@@ -142,7 +149,11 @@ impl Taps {
         while from < last {
             let weight = last.min(from + stride) - first.max(from);
             let pixel = ((from + (0.5 * stride).floor()) as u32).min(size - 1);
-            of.push((place(pixel, size, has), weight));
+            let place = place(pixel, size, has);
+            match of.last_mut() {
+                Some((last, all)) if *last == place => *all += weight,
+                _ => of.push((place, weight)),
+            }
             weights += weight;
             from += stride;
         }
@@ -151,7 +162,8 @@ impl Taps {
             of.push((has - 1, 1.0));
             weights = 1.0;
         }
-        Self { of, weights }
+        of.iter_mut().for_each(|(_, weight)| *weight /= weights);
+        Self { of }
     }
 }
 
