@@ -1,0 +1,191 @@
+//! Where lanes are put together something may be wrong: a lane, a mask, a ray. The referee notices each.
+
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use fearless_simd::Simd;
+
+use super::vector::M;
+use super::{Lanes, OPEN};
+use crate::cpu::pixel::ExactTracer;
+use crate::scene::{Scene, load};
+use crate::settings::Settings;
+use crate::shader::pack::Packed;
+
+/// What may be wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Fault {
+    /// The first two pixels of a vector change places.
+    PixelsSwapped,
+    /// The samples of a vector go to the lanes beside.
+    SamplesShifted,
+    /// Of a vector's samples one is lost, and counts as if it were black.
+    SampleLost,
+    /// Where numbers are chosen by a mask, it is taken the other way round.
+    ChoiceInverted,
+    /// A branch that some lanes go, and not all, is gone by none.
+    BranchSkipped,
+    /// Lanes read the records of those beside.
+    RecordsShifted,
+    /// What is met of an object in a cell of the screen counts for the pixels of the other cells.
+    CellInverted,
+    /// A box of a tree is entered for the lanes alone that are off.
+    BoxInverted,
+    /// Shadow rays are looked after where they have found something, and not where they have not.
+    ShadowInverted,
+    /// Objects that one ray misses are left out for all.
+    MissedByOne,
+}
+
+impl Fault {
+    const ALL: [Self; 10] = [
+        Self::PixelsSwapped,
+        Self::SamplesShifted,
+        Self::SampleLost,
+        Self::ChoiceInverted,
+        Self::BranchSkipped,
+        Self::RecordsShifted,
+        Self::CellInverted,
+        Self::BoxInverted,
+        Self::ShadowInverted,
+        Self::MissedByOne,
+    ];
+
+    /// Whether it is one of pixels of several samples.
+    fn is_of_samples(self) -> bool {
+        matches!(self, Self::SamplesShifted | Self::SampleLost)
+    }
+}
+
+/// A fault shows every so many times: loops come to an end then.
+const EVERY: u32 = 7;
+
+thread_local! {
+    static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
+    static ASKED: Cell<u32> = const { Cell::new(0) };
+}
+
+/// Whether this is wrong now.
+pub(super) fn is_wrong(fault: Fault) -> bool {
+    FAULT.get() == Some(fault) && {
+        ASKED.set(ASKED.get().wrapping_add(1));
+        ASKED.get().is_multiple_of(EVERY)
+    }
+}
+
+/// A mask, inverted if that is wrong now.
+pub(super) fn inverted<S: Simd>(fault: Fault, mask: M<S>) -> M<S> {
+    if is_wrong(fault) { !mask } else { mask }
+}
+
+const SIZE: [u32; 2] = [45, 31];
+
+/// A picture, and what is right.
+struct Referee {
+    lanes: Lanes,
+    settings: Settings,
+    bytes: Vec<[u8; 3]>,
+}
+
+impl Referee {
+    fn new(scene: &Scene, samples: u32) -> Self {
+        let settings = Settings {
+            samples,
+            ..Settings::default()
+        };
+        let exact_tracer = ExactTracer::new(scene, settings.view());
+        let (limits, jitter) = (
+            settings.sample_limits(),
+            settings.sampling(SIZE[0], SIZE[1]),
+        );
+        let packed = Packed::prepared(exact_tracer.bounded(), scene, &settings);
+        let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+        let bytes = places.map(|[x, y]| {
+            let sampling = jitter.pixel(None, SIZE[0] as usize, x as usize);
+            exact_tracer.trace(&limits, sampling, x, y).unwrap().bytes
+        });
+        Self {
+            bytes: bytes.collect(),
+            lanes: Lanes::of(Arc::new(packed), &settings).unwrap(),
+            settings,
+        }
+    }
+
+    /// How many pixels each kind of vectors is sure of, and wrong about.
+    fn counts(&self) -> Vec<(&'static str, [usize; 2])> {
+        let kinds = self.lanes.with_each_vector();
+        kinds
+            .into_iter()
+            .map(|(name, lanes)| (name, self.count(&lanes)))
+            .collect()
+    }
+
+    fn count(&self, lanes: &Lanes) -> [usize; 2] {
+        let mut words = vec![OPEN; SIZE[0] as usize];
+        let (mut sure, mut wrong) = (0, 0);
+        for (y, right) in (0..).zip(self.bytes.chunks(SIZE[0] as usize)) {
+            match lanes.means() {
+                None => lanes.strip([0, y], &mut words),
+                Some(mut means) => lanes.sampled([0, y], None, &mut words, &mut means),
+            }
+            for (word, right) in words.iter().zip(right) {
+                let [red, green, blue, verdict] = word.to_le_bytes();
+                sure += usize::from(verdict == 0);
+                wrong += usize::from(verdict == 0 && [red, green, blue] != *right);
+            }
+        }
+        [sure, wrong]
+    }
+}
+
+fn scene(name: &str) -> Scene {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "scenes", name]
+        .iter()
+        .collect();
+    let mut scene = load(Path::new(&path)).unwrap();
+    scene.camera.pixeldim = SIZE;
+    scene
+}
+
+#[test]
+fn what_is_wrong_where_lanes_are_put_together_is_noticed() {
+    let tree = scene("hard/lit_balls_twice.txt");
+    let mut cells = tree.clone();
+    cells.lights.clear();
+    let scenes = [
+        scene("gallery/spheres_over_tiles.txt"),
+        cells,
+        tree,
+        scene("lit/mirror_balls.txt"),
+        scene("lit/gem.txt"),
+    ];
+    let of = |samples| -> Vec<_> {
+        scenes
+            .iter()
+            .map(|scene| Referee::new(scene, samples))
+            .collect()
+    };
+    let [one, several] = [1, 3].map(of);
+    for referee in one.iter().chain(&several) {
+        for (name, [sure, wrong]) in referee.counts() {
+            assert_eq!(wrong, 0, "{name}, {} samples", referee.settings.samples);
+            assert!(2 * sure > referee.bytes.len(), "{name}: {sure} sure");
+        }
+    }
+    for fault in Fault::ALL {
+        let referees = if fault.is_of_samples() {
+            &several
+        } else {
+            &one
+        };
+        FAULT.set(Some(fault));
+        let counts: Vec<_> = referees.iter().map(Referee::counts).collect();
+        FAULT.set(None);
+        for (kind, (name, _)) in counts[0].iter().enumerate() {
+            let wrong: Vec<_> = counts.iter().map(|counts| counts[kind].1[1]).collect();
+            println!("{fault:?}, {name}: {wrong:?} wrong");
+            assert!(wrong.iter().sum::<usize>() > 0, "{fault:?}, {name}");
+        }
+    }
+}
