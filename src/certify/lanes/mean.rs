@@ -1,12 +1,13 @@
 //! Pixels of several samples: the sums of what lanes are sure of. What counts, and how, is as in
 //! `shaders/entry/picture.wgsl`; the bounds are those of docs/NUMERICS.md, "Samples".
 
+use std::ops::Range;
+
 use super::OPEN;
 #[cfg(test)]
 use super::tests::{self, Fault};
 use crate::frame::Part;
 use crate::shader::bounds;
-use crate::shader::constants::FINE;
 
 /// So many samples are traced before their pixels are decided.
 const AT_ONCE: u32 = 1024;
@@ -19,22 +20,37 @@ struct Sum {
     count: u32,
 }
 
+/// What the lanes of a vector bring, one sample after the other: shares of their pixels' colours and errors, and bits of
+/// the lanes that count.
+pub(super) struct Shares<'a> {
+    /// By channels.
+    pub(super) color: [&'a [f32]; 3],
+    /// By channels.
+    pub(super) error: [&'a [f32]; 3],
+    /// Which are sure.
+    pub(super) sure: u64,
+    /// Which of these are known well enough to be worth keeping should others be in doubt.
+    pub(super) fine: u64,
+    /// How many there are.
+    pub(super) count: usize,
+}
+
 /// What is known of pixels side by side.
 #[derive(Debug)]
 pub struct Means {
     samples: u32,
-    /// A sample's share of a pixel, and of its error.
+    /// A sample's share of a pixel's colour, and of its error.
     shares: [f32; 2],
     /// Roundings of a sum, for a unit of it.
     roundings: f32,
-    /// Of the samples that are sure.
-    sure: Vec<Sum>,
-    /// Of those that are known well enough to be worth keeping should others be in doubt.
+    /// Of the samples that are fine.
     fine: Vec<Sum>,
-    /// Which those are: words of bits, as many for each pixel.
+    /// Of those that are sure, and not fine.
+    coarse: Vec<Sum>,
+    /// Which are fine: words of bits, as many for each pixel.
     summed: Vec<u32>,
     /// Pixel and sample that come next.
-    next: [u32; 2],
+    next: [usize; 2],
 }
 
 impl Means {
@@ -46,8 +62,8 @@ impl Means {
             samples,
             shares: [share, growth / samples as f32],
             roundings: roundings * u,
-            sure: Vec::new(),
             fine: Vec::new(),
+            coarse: Vec::new(),
             summed: Vec::new(),
             next: [0; 2],
         }
@@ -62,6 +78,11 @@ impl Means {
         self.samples
     }
 
+    /// A sample's share of its pixel's colour, and of its error.
+    pub(super) fn shares(&self) -> [f32; 2] {
+        self.shares
+    }
+
     /// Words of bits of a pixel.
     fn stride(&self) -> usize {
         self.samples.div_ceil(32) as usize
@@ -69,7 +90,7 @@ impl Means {
 
     /// Of so many pixels nothing is known.
     pub(super) fn begin(&mut self, pixels: usize) {
-        for sums in [&mut self.sure, &mut self.fine] {
+        for sums in [&mut self.fine, &mut self.coarse] {
             sums.clear();
             sums.resize(pixels, Sum::default());
         }
@@ -78,44 +99,48 @@ impl Means {
         self.next = [0; 2];
     }
 
-    /// Adds the next sample, if it counts: what a doubtful one brings means nothing. They come pixel by pixel.
+    /// Adds the next samples, as far as they count: what a doubtful one brings means nothing. They come pixel by pixel.
     #[inline(always)]
-    pub(super) fn add(&mut self, color: [f32; 3], error: [f32; 3], sure: bool) {
-        let [pixel, sample] = self.next;
-        self.next = if sample + 1 < self.samples {
-            [pixel, sample + 1]
-        } else {
-            [pixel + 1, 0]
-        };
-        if !sure {
-            return;
-        }
-        #[cfg(test)]
-        let color = if tests::is_wrong(Fault::SampleLost) {
-            [0.0; 3]
-        } else {
-            color
-        };
-        let pixel = pixel as usize;
-        self.sure[pixel].add(color, error, self.shares, self.roundings);
-        if error.iter().all(|error| *error < FINE) {
-            self.fine[pixel].add(color, error, self.shares, self.roundings);
-            let word = pixel * self.stride() + sample as usize / 32;
-            self.summed[word] |= 1 << (sample % 32);
+    pub(super) fn add(&mut self, new: &Shares<'_>) {
+        let mut lane = 0;
+        while lane < new.count {
+            let [pixel, sample] = self.next;
+            let end = new.count.min(lane + (self.samples as usize - sample));
+            let coarse = new.sure & !new.fine;
+            self.fine[pixel].add(new, lane..end, new.fine, self.roundings);
+            if coarse & bits(&(lane..end)) != 0 {
+                self.coarse[pixel].add(new, lane..end, coarse, self.roundings);
+            }
+            let word = pixel * self.stride() + sample / 32;
+            let bits = ((new.fine & bits(&(lane..end))) >> lane) << (sample % 32);
+            self.summed[word] |= bits as u32;
+            if bits >> 32 != 0 {
+                self.summed[word + 1] |= (bits >> 32) as u32;
+            }
+            self.next = if sample + (end - lane) == self.samples as usize {
+                [pixel + 1, 0]
+            } else {
+                [pixel, sample + (end - lane)]
+            };
+            lane = end;
         }
     }
 
     /// Sum and error of a pixel's sure samples; of none beyond the last pixel.
     #[inline(always)]
     pub(super) fn sum(&self, pixel: usize) -> [[f32; 3]; 2] {
-        let sum = self.sure.get(pixel).copied().unwrap_or_default();
-        [sum.color, sum.error]
+        let (Some(fine), Some(coarse)) = (self.fine.get(pixel), self.coarse.get(pixel)) else {
+            return [[0.0; 3]; 2];
+        };
+        let color = [0, 1, 2].map(|i| fine.color[i] + coarse.color[i]);
+        let error = [0, 1, 2].map(|i| fine.error[i] + coarse.error[i] + self.roundings * color[i]);
+        [color, error]
     }
 
     /// [`OPEN`] where a sample of the pixel is in doubt, else 0.
     #[inline(always)]
     pub(super) fn verdict(&self, pixel: usize) -> u32 {
-        if self.sure[pixel].count == self.samples {
+        if self.fine[pixel].count + self.coarse[pixel].count == self.samples {
             0
         } else {
             OPEN
@@ -135,12 +160,30 @@ impl Means {
 }
 
 impl Sum {
+    /// Adds those of these lanes whose bits are set; the others as if they brought nothing.
     #[inline(always)]
-    fn add(&mut self, color: [f32; 3], error: [f32; 3], shares: [f32; 2], roundings: f32) {
-        for i in 0..3 {
-            self.color[i] += color[i] * shares[0];
-            self.error[i] += error[i] * shares[1] + roundings * self.color[i];
+    fn add(&mut self, new: &Shares<'_>, lanes: Range<usize>, counts: u64, roundings: f32) {
+        let mut sum = *self;
+        let all = bits(&lanes);
+        for lane in lanes {
+            #[cfg(test)]
+            if tests::is_wrong(Fault::SampleLost) {
+                continue;
+            }
+            let adds = counts & all == all || counts >> lane & 1 != 0;
+            for i in 0..3 {
+                let share = |of: &[&[f32]; 3]| if adds { of[i][lane] } else { 0.0 };
+                sum.color[i] += share(&new.color);
+                sum.error[i] += share(&new.error) + roundings * sum.color[i];
+            }
         }
-        self.count += 1;
+        sum.count += (counts & all).count_ones();
+        *self = sum;
     }
+}
+
+/// A bit for each of these lanes.
+#[inline(always)]
+fn bits(lanes: &Range<usize>) -> u64 {
+    ((1 << lanes.len()) - 1) << lanes.start
 }

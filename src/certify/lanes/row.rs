@@ -3,11 +3,12 @@
 use fearless_simd::{Simd, prelude::*};
 
 use super::text::{State, camera_getdir, camera_setpix, jitter_hash, ray_trace};
-use crate::certify::lanes::mean::Means;
+use crate::certify::lanes::mean::{Means, Shares};
 use crate::certify::lanes::scene::Scene;
 #[cfg(test)]
 use crate::certify::lanes::tests::{self, Fault};
 use crate::certify::lanes::vector::{F, I, U, Vec2, Vec3};
+use crate::shader::constants::FINE;
 
 /// The words of pixels side by side, from column `first` of row `y` on: bytes, and a verdict.
 pub(in crate::certify::lanes) fn strip<S: Simd>(
@@ -59,6 +60,7 @@ pub(in crate::certify::lanes) fn sampled<S: Simd>(
             let mut column = I::from_fn(scene.simd, |lane| (first + lane as u32 / samples) as i32);
             let mut number = U::from_fn(scene.simd, |lane| lane as u32 % samples);
             let mut state = State::new(scene.simd);
+            let [share, error_share] = means.shares();
             means.begin(words.len());
             for done in (0..all).step_by(width as usize) {
                 let on = place.lt(scene.u32(all - done));
@@ -68,15 +70,19 @@ pub(in crate::certify::lanes) fn sampled<S: Simd>(
                     Some(offsets) => Vec2::new(0, 1).map(|part| given(scene, offsets, done, part)),
                 };
                 let traced = ray_trace(scene, &mut state, on, camera_getdir(scene, pixel, offset));
-                let parts =
-                    |v: Vec3<F<S>>, lane: usize| [v.x, v.y, v.z].map(|part| part.as_slice()[lane]);
-                for lane in 0..width.min(all - done) {
-                    let at = lane as usize;
-                    #[cfg(test)]
-                    let at = at ^ usize::from(tests::is_wrong(Fault::SamplesShifted));
-                    let sure = traced.verdict.as_slice()[at] == 0;
-                    means.add(parts(traced.color, at), parts(traced.error, at), sure);
-                }
+                let sure = traced.verdict.eq(scene.u32(0));
+                let fine = traced.error.map(|error| error.lt(scene.f32(FINE))).all();
+                let color = traced.color * share;
+                #[cfg(test)]
+                let color = color.map(|part| tests::shifted(Fault::SamplesShifted, part));
+                let error = traced.error * error_share;
+                means.add(&Shares {
+                    color: [&color.x, &color.y, &color.z].map(F::as_slice),
+                    error: [&error.x, &error.y, &error.z].map(F::as_slice),
+                    sure: sure.bits(),
+                    fine: (sure & fine).bits(),
+                    count: width.min(all - done) as usize,
+                });
                 // The same lane's next sample, perhaps of another pixel.
                 number = number + width % samples;
                 let beyond = number.ge(scene.u32(samples));

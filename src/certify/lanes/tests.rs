@@ -4,9 +4,9 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, prelude::*};
 
-use super::vector::M;
+use super::vector::{F, M};
 use super::{Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
 use crate::scene::{Scene, load};
@@ -18,7 +18,7 @@ use crate::shader::pack::Packed;
 pub(super) enum Fault {
     /// The first two pixels of a vector change places.
     PixelsSwapped,
-    /// The samples of a vector go to the lanes beside.
+    /// A colour's channel goes to the samples beside.
     SamplesShifted,
     /// Of a vector's samples one is lost, and counts as if it were black.
     SampleLost,
@@ -77,6 +77,16 @@ pub(super) fn is_wrong(fault: Fault) -> bool {
 /// A mask, inverted if that is wrong now.
 pub(super) fn inverted<S: Simd>(fault: Fault, mask: M<S>) -> M<S> {
     if is_wrong(fault) { !mask } else { mask }
+}
+
+/// Numbers, each in the lane beside if that is wrong now.
+pub(super) fn shifted<S: Simd>(fault: Fault, numbers: F<S>) -> F<S> {
+    let all = numbers.as_slice();
+    if is_wrong(fault) {
+        F::from_fn(numbers.0.token(), |lane| all[(lane + 1) % all.len()])
+    } else {
+        numbers
+    }
 }
 
 const SIZE: [u32; 2] = [45, 31];
