@@ -20,8 +20,8 @@ struct Sum {
     count: u32,
 }
 
-/// What the lanes of a vector bring, one sample after the other: shares of their pixels' colours and errors, and bits of
-/// the lanes that count.
+/// What the lanes of a vector bring, one sample after the other: shares of their pixels' colours and errors, and bits
+/// of the lanes that count.
 pub(super) struct Shares<'a> {
     /// By channels.
     pub(super) color: [&'a [f32]; 3],

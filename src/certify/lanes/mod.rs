@@ -1,12 +1,12 @@
 //! The GPU's arithmetic on the CPU: as many pixels of a row at once as a vector of the processor holds, in f32 with the
 //! GPU's error bounds (docs/NUMERICS.md).
 //!
-//! Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a pixel that is sure
-//! here has its exact bytes; the others are left to [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is
-//! the WGSL itself: `src/lower` writes `ambient/text.rs` and `lit/text.rs` from `shaders/`. By hand are rows of
-//! pixels (`row`, with the means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels,
-//! `lit/by_hand` and `lit/walk` for rays from anywhere), and what the text's types are here (`vector`, `gather`,
-//! `scene`). [`cpu`](crate::cpu) is the referee.
+//! Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a pixel that is sure here has its exact
+//! bytes; the others are left to [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is the WGSL itself:
+//! `src/lower` writes `ambient/text.rs` and `lit/text.rs` from `shaders/`. By hand are rows of pixels (`row`, with the
+//! means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels, `lit/by_hand` and
+//! `lit/walk` for rays from anywhere), and what the text's types are here (`vector`, `gather`, `scene`).
+//! [`cpu`](crate::cpu) is the referee.
 
 mod ambient;
 #[allow(
@@ -115,8 +115,8 @@ impl Lanes {
         (self.samples > 1).then(|| Means::new(self.samples))
     }
 
-    /// The pixels of row `y` from column `first` on, of a sample each: of each its bytes, red lowest, or [`OPEN`] in the
-    /// highest.
+    /// The pixels of row `y` from column `first` on, of a sample each: of each its bytes, red lowest, or [`OPEN`] in
+    /// the highest.
     pub fn strip(&self, [first, y]: [u32; 2], words: &mut [u32]) {
         self.fill(
             words,
@@ -128,8 +128,8 @@ impl Lanes {
         );
     }
 
-    /// The same of pixels of several samples, [`Means::at_once`] at most: by the hash, or with the row's offsets. What is
-    /// known of those that are left open is in `means`.
+    /// The same of pixels of several samples, [`Means::at_once`] at most: by the hash, or with the row's offsets. What
+    /// is known of those that are left open is in `means`.
     pub fn sampled(
         &self,
         [first, y]: [u32; 2],
@@ -173,8 +173,8 @@ impl Lanes {
     }
 }
 
-/// What words are of: pixels from column `first` of row `y` on; their means if they have several samples, which lie by the
-/// hash, or with these offsets.
+/// What words are of: pixels from column `first` of row `y` on; their means if they have several samples, which lie by
+/// the hash, or with these offsets.
 struct Work<'a> {
     first: u32,
     y: u32,
