@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use fearless_simd::{Simd, prelude::*};
 
+use super::mean::{Means, Shares};
 use super::vector::{F, M};
 use super::{Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
@@ -196,6 +197,74 @@ fn what_is_wrong_where_lanes_are_put_together_is_noticed() {
             let wrong: Vec<_> = counts.iter().map(|counts| counts[kind].1[1]).collect();
             println!("{fault:?}, {name}: {wrong:?} wrong");
             assert!(wrong.iter().sum::<usize>() > 0, "{fault:?}, {name}");
+        }
+    }
+}
+
+/// Whatever the vectors are, and however pixels lie in them: the bits are those of the fine samples, and the sums hold
+/// the exact ones.
+#[test]
+fn means_hold_what_was_added() {
+    let mut seed = 1_u64;
+    let mut next = move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (seed >> 40) as f32 / 16_777_216.0
+    };
+    for (samples, width) in [(2, 16), (3, 4), (16, 16), (33, 8), (40, 16), (70, 16)] {
+        let mut means = Means::new(samples);
+        let (pixels, [share, error_share]) = (5, means.shares());
+        means.begin(pixels);
+        let all: Vec<_> = (0..pixels as u32 * samples)
+            .map(|_| (255.0 * next(), 0.01 * next(), next() < 0.9, next() < 0.7))
+            .collect();
+        for new in all.chunks(width) {
+            let color: Vec<_> = new.iter().map(|(color, ..)| color * share).collect();
+            let error: Vec<_> = new
+                .iter()
+                .map(|(_, error, ..)| error * error_share)
+                .collect();
+            let bits = |of: fn(bool, bool) -> bool| {
+                let on = |(lane, (_, _, sure, fine)): (usize, &(f32, f32, bool, bool))| {
+                    u64::from(of(*sure, *fine)) << lane
+                };
+                new.iter().enumerate().map(on).sum()
+            };
+            means.add(&Shares {
+                color: [&color; 3],
+                error: [&error; 3],
+                sure: bits(|sure, _| sure),
+                fine: bits(|sure, fine| sure && fine),
+                count: new.len(),
+            });
+        }
+        for (pixel, all) in all.chunks(samples as usize).enumerate() {
+            let mean = |counts: fn(bool, bool) -> bool| -> f64 {
+                let counted = all.iter().filter(|(_, _, sure, fine)| counts(*sure, *fine));
+                counted.map(|(color, ..)| f64::from(*color)).sum::<f64>() / f64::from(samples)
+            };
+            let holds = |sum: f32, error: f32, exact: f64| {
+                error < 0.011 && (f64::from(sum) - exact).abs() <= f64::from(error)
+            };
+            let [color, error] = means.sum(pixel);
+            assert!(holds(color[0], error[0], mean(|sure, _| sure)));
+            let is_sure = all.iter().all(|(_, _, sure, _)| *sure);
+            assert_eq!(means.verdict(pixel), if is_sure { 0 } else { OPEN });
+            let fine: Vec<_> = (0..)
+                .zip(all)
+                .filter(|(_, s)| s.2 && s.3)
+                .map(|(i, _)| i)
+                .collect();
+            let some = (1..all.len()).contains(&fine.len());
+            assert_eq!(means.part(pixel).is_some(), some);
+            if let Some(part) = means.part(pixel) {
+                let held: Vec<u32> = (0..samples).filter(|sample| part.holds(*sample)).collect();
+                assert_eq!(held, fine, "{samples} samples");
+                assert!(holds(
+                    part.sum[1],
+                    part.error[1],
+                    mean(|sure, fine| sure && fine)
+                ));
+            }
         }
     }
 }
