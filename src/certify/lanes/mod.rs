@@ -32,6 +32,7 @@ mod vector;
 
 use std::sync::Arc;
 
+use bytemuck::Zeroable;
 use fearless_simd::{Level, Simd};
 
 use crate::settings::Settings;
@@ -74,12 +75,20 @@ impl Lanes {
         if packed.unprovable.is_some() || packed.kinds.is_empty() || packed.bvh_depth > MOST_DEPTH {
             return None;
         }
+        let mut numbers = Numbers::new(&packed, settings);
+        let mut buffers = Buffers {
+            objects: binding::objects(&packed),
+            lit_objects: binding::lit_objects(&packed),
+        };
+        if packed.tables.words.is_empty() {
+            // The text asks for tables all the same. It reads beyond the last object then, and finds that there is none.
+            numbers.tables = buffers.objects.len().max(buffers.lit_objects.len()) as u32;
+            buffers.objects.push(Zeroable::zeroed());
+            buffers.lit_objects.push(Zeroable::zeroed());
+        }
         Some(Self {
-            numbers: Numbers::new(&packed, settings),
-            buffers: Buffers {
-                objects: binding::objects(&packed),
-                lit_objects: binding::lit_objects(&packed),
-            },
+            numbers,
+            buffers,
             packed,
             samples: settings.samples.max(1),
             level: Level::new(),
