@@ -80,7 +80,7 @@ pub struct Decided {
     pub by: DecidedBy,
 }
 
-/// What is known of a pixel of several samples before the CPU decides it: the share of those that the GPU is sure of.
+/// What is known of a pixel of several samples before the CPU decides it: the share of those that f32 is sure of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part<'a> {
     /// 255 times the share that the sure samples have in the pixel's mean.

@@ -8,12 +8,13 @@ use rayon::prelude::*;
 
 use super::first_halt::FirstHalt;
 use super::{Decided, DecidedBy, Tally};
+use crate::certify::lanes::mean::Means;
 use crate::certify::lanes::{LANES, Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
 use crate::cpu::trace::Limits;
-use crate::frame::{Band, Halt, StopRequested, spare};
+use crate::frame::{Band, Halt, Part, StopRequested, spare};
 use crate::gpu::bands::Partials;
-use crate::jitter::Jitter;
+use crate::jitter::{Jitter, Sampling};
 use crate::prepare::ViewParameters;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -146,25 +147,13 @@ impl<'a> PixelDecider<'a> {
         if (self.stop)() {
             return Err(Halt::Stopped);
         }
-        let exact_tracer = self.exact_tracer();
         let mut tally = Tally::default();
         let mut all = Vec::with_capacity(places.len());
         let mut before = Instant::now();
         for place in places {
             let x = place % self.width as u32;
             let sampling = self.jitter.pixel(offsets, self.width, x as usize);
-            let mut samples = sampling.samples();
-            let mut completed = None;
-            if let Some(part) = known.get(*place) {
-                completed = exact_tracer.complete(&self.limits, sampling, x, y, &part)?;
-                if completed.is_some() {
-                    samples -= part.samples().min(samples);
-                }
-            }
-            let decided = match completed {
-                Some(decided) => decided,
-                None => exact_tracer.trace(&self.limits, sampling, x, y)?,
-            };
+            let (decided, samples) = self.decide(sampling, [x, y], known.get(*place))?;
             let after = Instant::now();
             tally.decided(decided.by, [x, y], samples, after - before);
             before = after;
@@ -268,37 +257,66 @@ impl<'a> PixelDecider<'a> {
             values,
             verdicts,
         } = strip;
-        let exact_tracer = self.exact_tracer();
         let mut tally = Tally::default();
         let mut quick = 0;
         // What the lanes are sure of, and which pixels they leave open.
         let mut words = vec![OPEN; bytes.len() / 3];
-        if let Some(lanes) = lanes {
-            lanes.strip(first as u32, y, &mut words);
-        }
-        for (i, (pixel, word)) in bytes.chunks_exact_mut(3).zip(words).enumerate() {
-            let x = first + i;
-            let mut by = DecidedBy::Single;
-            if word < OPEN {
-                let [red, green, blue, _] = word.to_le_bytes();
-                pixel.copy_from_slice(&[red, green, blue]);
-                quick += 1;
-            } else {
-                let sampling = self.jitter.pixel(offsets, self.width, x);
-                let decided = exact_tracer.trace(&self.limits, sampling, x as u32, y)?;
-                by = decided.by;
-                tally.decided(by, [x as u32, y], sampling.samples(), Duration::ZERO);
-                pixel.copy_from_slice(&decided.bytes);
-                if let Some(value) = values.get_mut(i) {
-                    *value = decided.value;
+        let mut means = lanes.and_then(Lanes::means);
+        let at_once = means.as_ref().map_or(words.len(), Means::at_once);
+        for start in (0..words.len()).step_by(at_once) {
+            let group = start..words.len().min(start + at_once);
+            let at = [(first + start) as u32, y];
+            match (lanes, &mut means) {
+                (None, _) => {}
+                (Some(lanes), None) => lanes.strip(at, &mut words[group.clone()]),
+                (Some(lanes), Some(means)) => {
+                    lanes.sampled(at, offsets, &mut words[group.clone()], means);
                 }
             }
-            if let Some(verdict) = verdicts.get_mut(i) {
-                *verdict = by;
+            for i in group {
+                let x = first + i;
+                let pixel = &mut bytes[3 * i..][..3];
+                let mut by = DecidedBy::Single;
+                if words[i] < OPEN {
+                    let [red, green, blue, _] = words[i].to_le_bytes();
+                    pixel.copy_from_slice(&[red, green, blue]);
+                    quick += 1;
+                } else {
+                    let sampling = self.jitter.pixel(offsets, self.width, x);
+                    let part = means.as_ref().and_then(|means| means.part(i - start));
+                    let (decided, traced) = self.decide(sampling, [x as u32, y], part)?;
+                    by = decided.by;
+                    tally.decided(by, [x as u32, y], traced, Duration::ZERO);
+                    pixel.copy_from_slice(&decided.bytes);
+                    if let Some(value) = values.get_mut(i) {
+                        *value = decided.value;
+                    }
+                }
+                if let Some(verdict) = verdicts.get_mut(i) {
+                    *verdict = by;
+                }
             }
         }
         tally.add(DecidedBy::Single, quick);
         Ok(tally)
+    }
+
+    /// Decides a pixel, of which perhaps a part is known: then only the samples that are missing are traced, if that is
+    /// enough. Tells how many were.
+    fn decide(
+        &self,
+        sampling: Sampling<'_>,
+        [x, y]: [u32; 2],
+        part: Option<Part<'_>>,
+    ) -> Result<(Decided, u32), Halt> {
+        let exact_tracer = self.exact_tracer();
+        let samples = sampling.samples();
+        if let Some(part) = part
+            && let Some(decided) = exact_tracer.complete(&self.limits, sampling, x, y, &part)?
+        {
+            return Ok((decided, samples - part.samples().min(samples)));
+        }
+        Ok((exact_tracer.trace(&self.limits, sampling, x, y)?, samples))
     }
 }
 

@@ -38,21 +38,13 @@ impl Text {
     }
 }
 
-const PARTS: [&str; 4] = ["x", "y", "z", "w"];
+pub(super) const PARTS: [&str; 4] = ["x", "y", "z", "w"];
 
 impl Writer<'_> {
     pub(super) fn inner(&self, expression: Handle<Expression>) -> &TypeInner {
         match &self.shader.info[self.handle][expression].ty {
             TypeResolution::Handle(ty) => &self.shader.module.types[*ty].inner,
             TypeResolution::Value(inner) => inner,
-        }
-    }
-
-    fn type_handle(&self, expression: Handle<Expression>) -> Option<Handle<Type>> {
-        match &self.shader.info[self.handle][expression].ty {
-            TypeResolution::Handle(ty) => Some(*ty),
-            TypeResolution::Value(TypeInner::Pointer { base, .. }) => Some(*base),
-            TypeResolution::Value(_) => None,
         }
     }
 
@@ -293,119 +285,4 @@ impl Writer<'_> {
             atom(format!("{{ let v = {}; {swizzled} }}", text.rust))
         }
     }
-
-    /// What a pointer leads to, as a value.
-    fn load(&self, pointer: Handle<Expression>) -> Text {
-        let text = self.expression(pointer);
-        if self.kinds.get(pointer) == Kind::Place
-            && matches!(
-                self.function.expressions[pointer],
-                Expression::FunctionArgument(_)
-            )
-        {
-            return Text {
-                rust: format!("*{}", text.rust),
-                binding: UNARY,
-            };
-        }
-        if self.kinds.get(pointer) == Kind::Gathered
-            && self.inner(pointer).pointer_space().is_some()
-            && matches!(
-                self.function.expressions[pointer],
-                Expression::Access { .. }
-            )
-            && let Some(ty) = self.type_handle(pointer)
-            && matches!(self.shader.module.types[ty].inner, TypeInner::Scalar(_))
-        {
-            // An element of a list of numbers.
-            return atom(format!("{}.u32(0)", text.rust));
-        }
-        text
-    }
-
-    fn access(
-        &self,
-        expression: Handle<Expression>,
-        base: Handle<Expression>,
-        index: Handle<Expression>,
-    ) -> Text {
-        let text = self.expression(base).within(ATOM);
-        match (self.kinds.get(base), self.kinds.is_shared(index)) {
-            (Kind::Record, true) => {
-                let index = self.expression(index).within(CAST);
-                atom(format!("{text}[{index} as usize]"))
-            }
-            (Kind::Record, false) => {
-                let index = self.expression(index).rust;
-                let buffer = text.strip_prefix("scene.").unwrap_or(&text);
-                atom(format!("scene.gather(&scene.{buffer}, {index})"))
-            }
-            (Kind::Place, _) => {
-                let index = self.lanes(index).rust;
-                atom(format!("scene.take(&{text}, {index})"))
-            }
-            _ => self.fail("an element by a number", expression),
-        }
-    }
-
-    fn member(&self, expression: Handle<Expression>, base: Handle<Expression>, index: u32) -> Text {
-        let inner = match self.inner(base) {
-            TypeInner::Pointer { base, .. } => &self.shader.module.types[*base].inner,
-            inner => inner,
-        };
-        let text = self.expression(base).within(ATOM);
-        let TypeInner::Struct { members, .. } = inner else {
-            return match self.kinds.get(base) {
-                Kind::Array => atom(format!("{text}[{index}]")),
-                _ => match one_of_gathered(&text, index) {
-                    Some(one) => atom(one),
-                    None => atom(format!("{text}.{}", PARTS[index as usize])),
-                },
-            };
-        };
-        let field = members[index as usize].name.as_deref().unwrap_or_default();
-        if self.kinds.get(base) != Kind::Gathered {
-            return atom(format!("{text}.{field}"));
-        }
-        let member = members[index as usize].ty;
-        // What stands in one buffer on a GPU, as some drivers allow few, are two lists here.
-        match field {
-            "sphere" => return atom(text),
-            "hit" => return atom(text.replace("&scene.spheres,", "&scene.sphere_points,")),
-            _ => {}
-        }
-        let of = match &self.shader.module.types[member].inner {
-            TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => "f32",
-            TypeInner::Scalar(_) => "u32",
-            TypeInner::Vector { size, scalar } => match (*size as u8, scalar.kind) {
-                (2, ScalarKind::Float) => "vec2",
-                (3, ScalarKind::Float) => "vec3",
-                (4, ScalarKind::Float) => "vec4",
-                (2, ScalarKind::Uint) => "vec2_u32",
-                _ => "vec2_i32",
-            },
-            _ => self.fail("a member", expression),
-        };
-        let record = self.type_handle(base).and_then(|ty| self.shader.record(ty));
-        let record = record.unwrap_or_else(|| self.fail("a member", expression));
-        atom(format!(
-            "{text}.{of}(offset_of!(records::{record}, {field}))"
-        ))
-    }
-}
-
-/// A component of a vector that each lane reads from its own record: the others need not be read.
-fn one_of_gathered(text: &str, index: u32) -> Option<String> {
-    let (of, field) = text.strip_suffix(')')?.split_once("(offset_of!")?;
-    let (record, vector) = of.rsplit_once('.')?;
-    let scalar = match vector {
-        "vec2" | "vec3" | "vec4" => "f32",
-        "vec2_u32" => "u32",
-        _ => return None,
-    };
-    let place = match index {
-        0 => String::new(),
-        _ => format!(" + {}", index as usize * size_of::<u32>()),
-    };
-    Some(format!("{record}.{scalar}(offset_of!{field}{place})"))
 }

@@ -3,10 +3,11 @@
 //! f32.
 //!
 //! [`module`] reads naga's IR of a composed shader. Numbers that all lanes share are told from those of each lane in
-//! [`kinds`]. [`expression`], [`operator`], [`call`] and [`statement`] write them, [`variables`] says where variables
-//! belong to, [`control`] makes masks of branches and loops, [`signature`] says what functions and structs look like.
-//! [`texts`] has what the lowering is told and writes a text as a whole; [`upkeep`] has the shaders, and the test that
-//! says when what is checked in is out of date. What has no meaning for lanes is an error that names the function.
+//! [`kinds`]. [`expression`], [`place`], [`operator`], [`call`] and [`statement`] write them, [`variables`] says where
+//! variables belong to, [`control`] makes masks of branches and loops, [`signature`] says what functions and structs
+//! look like. [`texts`] has what the lowering is told and writes a text as a whole; [`upkeep`] has the shaders, and the
+//! test that says when what is checked in is out of date. What has no meaning for lanes is an error that names the
+//! function.
 //! Premises: docs/NUMERICS.md, "The same on the CPU".
 
 mod call;
@@ -15,6 +16,7 @@ mod expression;
 mod kinds;
 mod module;
 mod operator;
+mod place;
 mod signature;
 mod statement;
 mod tests;

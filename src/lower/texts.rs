@@ -60,6 +60,7 @@ pub(super) const AMBIENT: Told = Told {
     roots: &[
         "camera_getdir",
         "camera_setpix",
+        "jitter_hash",
         "nearer",
         "plane_hits",
         "polygon_hits",
@@ -94,6 +95,7 @@ pub(super) const LIT: Told = Told {
     roots: &[
         "camera_getdir",
         "camera_setpix",
+        "jitter_hash",
         "nearer",
         "nearer_secondary",
         "occludes",

@@ -36,7 +36,7 @@ fn everything(lit: bool) -> FeatureSet {
         kinds: kinds(),
         values: true,
         packed: false,
-        samples: 1,
+        samples: 2,
         course: false,
         lanes: 1,
         lit: lit.then_some(LitFeatures {

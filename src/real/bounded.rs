@@ -26,8 +26,9 @@ pub struct Bounded {
 /// Unit roundoff of f64.
 const U: f64 = 1.0 / 9_007_199_254_740_992.0;
 /// What underflow may take: half the smallest subnormal from the result, and from each of up to seven terms of the
-/// bound.
-const TINY: f64 = f64::from_bits(4);
+/// bound. That would be 2⁻¹⁰⁷². But then all numbers that are 0 by a product have a subnormal bound, and a product with
+/// that takes some processors a hundred times as long as others; so it is 2⁻¹⁰⁰⁰.
+const TINY: f64 = f64::from_bits(103_582_791_429_521_408);
 
 impl Bounded {
     /// What the roundings of the bound itself may add up to: where a bound is used, it is multiplied by this.

@@ -262,6 +262,15 @@ named! {
     BRIGHT_GROWTH = 1.001, at least 1.0001;
 }
 
+/// Roundings of |W| and of W/|W| for a unit of κ, with a ray a pixel or with several.
+pub fn direction_roundings(several: bool) -> [f64; 2] {
+    if several {
+        [SAMPLED_LENGTH_ROUNDINGS, SAMPLED_DIR_ROUNDINGS]
+    } else {
+        [LENGTH_ROUNDINGS, DIR_ROUNDINGS]
+    }
+}
+
 /// The pixels of the picture, and how rays pass through them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screen {

@@ -25,7 +25,7 @@ const STACK: usize = 8;
 /// Of a pixel that the GPU does not decide, samples off by more than this (255 is a full byte) are left to the CPU too:
 /// what they leave open would cost all others. Tried from 1/1000 to 1: around 1/8 the CPU has the fewest samples to
 /// compute.
-const FINE: f32 = 0.125;
+pub const FINE: f32 = 0.125;
 
 /// The numbers that the text refers to by name.
 pub(super) fn constants(packed: &Packed, set: &FeatureSet, features: &Features) -> String {
@@ -161,15 +161,7 @@ fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
     }
     let camera = &packed.camera;
     let for_spread = |roundings: f64| roundings * f64::from(camera.condition) * bounds::U;
-    let (length, dir) = if features.contains(&Feature::Samples) {
-        (
-            bounds::SAMPLED_LENGTH_ROUNDINGS,
-            bounds::SAMPLED_DIR_ROUNDINGS,
-        )
-    } else {
-        (bounds::LENGTH_ROUNDINGS, bounds::DIR_ROUNDINGS)
-    };
-    let brightest = (bounds::DARKNESS / f64::from(packed.dark)).min(f64::from(f32::MAX));
+    let [length, dir] = bounds::direction_roundings(features.contains(&Feature::Samples));
     let named = bounds::NAMED.iter();
     let named = named.map(|constant| line(constant.name, constant.value));
     let mut lines: Vec<String> = named.collect();
@@ -179,7 +171,7 @@ fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
         line("DIR_ERROR", for_spread(dir)),
         line("VALUE_ERROR", for_spread(bounds::VALUE_ROUNDINGS)),
         format!("const DARK = {};", literal(packed.dark)),
-        line("BRIGHT", brightest),
+        line("BRIGHT", packed.brightest()),
     ]);
     if features.contains(&Feature::Lit) {
         lines.extend([

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use glam::DVec3;
+use plumb::certify::lanes::Lanes;
+use plumb::jitter::Jitter;
 use plumb::render::{Backend, Devices, Report, Settings, render_with};
 use plumb::scene::{Beam, Light, Scene, load};
 
@@ -54,6 +56,18 @@ pub(crate) fn picture(scene: &Scene, settings: &Settings) -> (Vec<u8>, Report) {
     })
     .unwrap_or_else(|error| panic!("{error}"));
     (rgb, report)
+}
+
+/// The words of a row that lanes make: bytes where they are sure.
+pub(crate) fn row_by_lanes(lanes: &Lanes, jitter: &Jitter, y: u32, words: &mut [u32]) {
+    let Some(mut means) = lanes.means() else {
+        return lanes.strip([0, y], words);
+    };
+    let (offsets, at_once) = (jitter.row(y), means.at_once());
+    for (k, words) in words.chunks_mut(at_once).enumerate() {
+        let first = (k * at_once) as u32;
+        lanes.sampled([first, y], offsets.as_deref(), words, &mut means);
+    }
 }
 
 /// A white light; the only one that tests make of its fields, so that another field is given a value here alone.

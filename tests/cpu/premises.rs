@@ -91,7 +91,7 @@ fn hexadecimal(text: &str) -> Option<f64> {
 /// The constants of a file, but for those that are whole numbers or tests'.
 fn constants(file: &str) -> Vec<Stands> {
     let text = read(file).unwrap();
-    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
     let lines = code.lines().filter_map(|line| {
         let (_, rest) = line.split_once("const ")?;
         let (name, written) = rest.strip_suffix(';')?.split_once(" = ")?;

@@ -5,6 +5,8 @@ use std::marker::PhantomData;
 use bytemuck::Pod;
 use fearless_simd::Simd;
 
+#[cfg(test)]
+use super::tests::{self, Fault};
 use super::vector::{F, I, U, Vec2, Vec3, Vec4};
 
 /// Bytes of a word: all fields of all records are made of words.
@@ -27,6 +29,13 @@ impl<'a, T: Pod, S: Simd> Gather<'a, T, S> {
     #[inline(always)]
     pub(super) fn new(simd: S, buffer: &'a [T], at: U<S>) -> Self {
         let at = at.min(U::splat(simd, buffer.len().saturating_sub(1) as u32));
+        #[cfg(test)]
+        let at = if tests::is_wrong(Fault::RecordsShifted) {
+            let width = at.as_slice().len();
+            U::from_fn(simd, |lane| at.as_slice()[(lane + 1) % width])
+        } else {
+            at
+        };
         let first = at.as_slice()[0];
         let same = at.eq(U::splat(simd, first)).all();
         let words = size_of::<T>() / WORD;

@@ -1,11 +1,12 @@
 //! The GPU's arithmetic on the CPU: as many pixels of a row at once as a vector of the processor holds, in f32 with the
 //! GPU's error bounds (docs/NUMERICS.md).
 //!
-//! For a ray a pixel. Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a pixel that is sure
-//! here has its exact bytes; the others are left to [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is
-//! the WGSL itself: `src/lower` writes `ambient/text.rs` and `lit/text.rs` from `shaders/`. By hand are the loops over
-//! objects (`primary` for rays of pixels, `lit/by_hand` and `lit/walk` for rays from anywhere), and what the text's
-//! types are here (`vector`, `gather`, `scene`). [`cpu`](crate::cpu) is the referee.
+//! Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a pixel that is sure here has its exact
+//! bytes; the others are left to [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is the WGSL itself:
+//! `src/lower` writes `ambient/text.rs` and `lit/text.rs` from `shaders/`. By hand are rows of pixels (`row`, with the
+//! means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels, `lit/by_hand` and
+//! `lit/walk` for rays from anywhere), and what the text's types are here (`vector`, `gather`, `scene`).
+//! [`cpu`](crate::cpu) is the referee.
 
 mod ambient;
 #[allow(
@@ -14,12 +15,15 @@ mod ambient;
 )]
 mod gather;
 mod lit;
+pub mod mean;
 #[allow(
     dead_code,
     reason = "the texts that are written say what they need of WGSL's types"
 )]
 mod number;
 mod scene;
+#[cfg(test)]
+mod tests;
 #[allow(
     dead_code,
     reason = "the texts that are written say what they need of WGSL's types"
@@ -28,11 +32,13 @@ mod vector;
 
 use std::sync::Arc;
 
+use bytemuck::Zeroable;
 use fearless_simd::{Level, Simd};
 
 use crate::settings::Settings;
 use crate::shader::binding;
 use crate::shader::pack::Packed;
+use mean::Means;
 use scene::{Buffers, Numbers, Scene};
 
 /// Pixels that the widest vectors hold.
@@ -50,30 +56,41 @@ pub struct Lanes {
     packed: Arc<Packed>,
     numbers: Numbers,
     buffers: Buffers,
+    /// Rays a pixel.
+    samples: u32,
     level: Level,
 }
 
 impl Lanes {
     /// The scene as the GPU would get it, asked for only where it may do; None where it takes more than there is here.
     pub fn new(settings: &Settings, packed: impl FnOnce() -> Arc<Packed>) -> Option<Self> {
-        if settings.supersampling().is_some() || settings.values {
+        if settings.values {
             return None;
         }
         Self::of(packed(), settings)
     }
 
-    /// A packed scene, for a ray a pixel.
+    /// A scene that was packed with these settings.
     pub fn of(packed: Arc<Packed>, settings: &Settings) -> Option<Self> {
         if packed.unprovable.is_some() || packed.kinds.is_empty() || packed.bvh_depth > MOST_DEPTH {
             return None;
         }
+        let mut numbers = Numbers::new(&packed, settings);
+        let mut buffers = Buffers {
+            objects: binding::objects(&packed),
+            lit_objects: binding::lit_objects(&packed),
+        };
+        if packed.tables.words.is_empty() {
+            // The text asks for tables all the same. It reads beyond the last object then, and finds that there is none.
+            numbers.tables = buffers.objects.len().max(buffers.lit_objects.len()) as u32;
+            buffers.objects.push(Zeroable::zeroed());
+            buffers.lit_objects.push(Zeroable::zeroed());
+        }
         Some(Self {
-            numbers: Numbers::new(&packed, settings),
-            buffers: Buffers {
-                objects: binding::objects(&packed),
-                lit_objects: binding::lit_objects(&packed),
-            },
+            numbers,
+            buffers,
             packed,
+            samples: settings.samples.max(1),
             level: Level::new(),
         })
     }
@@ -102,28 +119,73 @@ impl Lanes {
         levels.into_iter().filter_map(at).collect()
     }
 
-    /// The pixels of row `y` from column `first` on: of each its bytes, red lowest, or [`OPEN`] in the highest.
-    pub fn strip(&self, first: u32, y: u32, words: &mut [u32]) {
+    /// Where the means of pixels are kept, if they have several samples.
+    pub fn means(&self) -> Option<Means> {
+        (self.samples > 1).then(|| Means::new(self.samples))
+    }
+
+    /// The pixels of row `y` from column `first` on, of a sample each: of each its bytes, red lowest, or [`OPEN`] in
+    /// the highest.
+    pub fn strip(&self, [first, y]: [u32; 2], words: &mut [u32]) {
+        self.fill(
+            words,
+            Work {
+                first,
+                y,
+                means: None,
+            },
+        );
+    }
+
+    /// The same of pixels of several samples, [`Means::at_once`] at most: by the hash, or with the row's offsets. What
+    /// is known of those that are left open is in `means`.
+    pub fn sampled(
+        &self,
+        [first, y]: [u32; 2],
+        offsets: Option<&[[f64; 2]]>,
+        words: &mut [u32],
+        means: &mut Means,
+    ) {
+        let offsets = offsets.map(|row| &row[(first * self.samples) as usize..]);
+        let means = Some((offsets, means));
+        self.fill(words, Work { first, y, means });
+    }
+
+    fn fill(&self, words: &mut [u32], work: Work<'_>) {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match self.level {
-            Level::Avx512(simd) => self.strip_by(simd, first, y, words),
-            Level::Avx2(simd) => self.strip_by(simd, first, y, words),
+            Level::Avx512(simd) => self.fill_by(simd, words, work),
+            Level::Avx2(simd) => self.fill_by(simd, words, work),
             // SSE4.2 has little more, and each kind of vectors takes the compiler as long as the others.
             level => match level.as_sse2() {
-                Some(simd) => self.strip_by(simd, first, y, words),
+                Some(simd) => self.fill_by(simd, words, work),
                 None => words.fill(OPEN),
             },
         }
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        fearless_simd::dispatch!(self.level, simd => self.strip_by(simd, first, y, words));
+        fearless_simd::dispatch!(self.level, simd => self.fill_by(simd, words, work));
     }
 
-    fn strip_by<S: Simd>(&self, simd: S, first: u32, y: u32, words: &mut [u32]) {
+    fn fill_by<S: Simd>(&self, simd: S, words: &mut [u32], work: Work<'_>) {
         let scene = Scene::new(simd, &self.packed, &self.numbers, &self.buffers);
-        if self.packed.lit.is_some() {
-            lit::primary::strip(&scene, first, y, words);
-        } else {
-            ambient::primary::strip(&scene, first, y, words);
+        let Work { first, y, means } = work;
+        match (means, self.packed.lit.is_some()) {
+            (None, false) => ambient::row::strip(&scene, first, y, words),
+            (None, true) => lit::row::strip(&scene, first, y, words),
+            (Some((offsets, means)), false) => {
+                ambient::row::sampled(&scene, [first, y], offsets, means, words);
+            }
+            (Some((offsets, means)), true) => {
+                lit::row::sampled(&scene, [first, y], offsets, means, words);
+            }
         }
     }
+}
+
+/// What words are of: pixels from column `first` of row `y` on; their means if they have several samples, which lie by
+/// the hash, or with these offsets.
+struct Work<'a> {
+    first: u32,
+    y: u32,
+    means: Option<(Option<&'a [[f64; 2]]>, &'a mut Means)>,
 }

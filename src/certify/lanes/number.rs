@@ -8,6 +8,9 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 use fearless_simd::{Bytes as _, Select as _, Simd, prelude::*};
 
+#[cfg(test)]
+use super::tests::{self, Fault};
+
 /// An `f32` of each lane.
 #[derive(Clone, Copy)]
 pub(super) struct F<S: Simd>(pub S::f32s);
@@ -76,6 +79,8 @@ macro_rules! numbers {
 
             #[inline(always)]
             fn pick(on: M<S>, new: Self, old: Self) -> Self {
+                #[cfg(test)]
+                let on = tests::inverted(Fault::ChoiceInverted, on);
                 Self(on.0.select(new.0, old.0))
             }
         }
@@ -285,6 +290,10 @@ impl<S: Simd> M<S> {
     /// Whether any lane is on.
     #[inline(always)]
     pub(super) fn any(self) -> bool {
+        #[cfg(test)]
+        if tests::is_wrong(Fault::BranchSkipped) {
+            return self.all();
+        }
         self.0.any_true()
     }
 

@@ -31,6 +31,7 @@ pub(super) struct Numbers {
     pub(super) dir_error: f32,
     pub(super) value_error: f32,
     pub(super) dark: f32,
+    pub(super) bright: f32,
     pub(super) light_nearest: f32,
     pub(super) total_least: f32,
     pub(super) bvh_size: f32,
@@ -51,6 +52,7 @@ impl Numbers {
     pub(super) fn new(packed: &Packed, settings: &Settings) -> Self {
         let camera = &packed.camera;
         let numbers = &camera.numbers;
+        let [length, dir] = bounds::direction_roundings(settings.supersampling().is_some());
         let for_spread =
             |roundings: f64| bounds::round_up(roundings * f64::from(camera.condition) * bounds::U);
         let lit = packed.lit.as_ref();
@@ -63,10 +65,11 @@ impl Numbers {
             camera_gain: numbers.gain,
             camera_unit: numbers.unit,
             w_error: camera.w_error,
-            length_error: for_spread(bounds::LENGTH_ROUNDINGS),
-            dir_error: for_spread(bounds::DIR_ROUNDINGS),
+            length_error: for_spread(length),
+            dir_error: for_spread(dir),
             value_error: for_spread(bounds::VALUE_ROUNDINGS),
             dark: packed.dark,
+            bright: bounds::round_up(packed.brightest()),
             light_nearest: bounds::round_up(packed.light_nearest()),
             total_least: bounds::round_up(packed.total_least()),
             bvh_size: packed.tree_size,

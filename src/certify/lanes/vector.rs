@@ -91,6 +91,15 @@ macro_rules! vectors {
             }
         }
 
+        impl<S: Simd> Mul<u32> for $vector<U<S>> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn mul(self, by: u32) -> Self {
+                self.map(|part| part * by)
+            }
+        }
+
         impl<S: Simd> Mul<$vector<F<S>>> for F<S> {
             type Output = $vector<F<S>>;
 

@@ -251,6 +251,11 @@ impl Packed {
             .min(f64::from(f32::MAX)) as f32
     }
 
+    /// 255 times what a ray may bring to its pixel, for a unit of 1/|P|: what `dark` is the other side of.
+    pub fn brightest(&self) -> f64 {
+        (DARKNESS / f64::from(self.dark)).min(f64::from(f32::MAX))
+    }
+
     /// Packs what modulates an object's material, and notes it in the object.
     fn pack_surface(
         &mut self,

@@ -5,25 +5,29 @@ use std::sync::Arc;
 
 use plumb::certify::lanes::{Lanes, OPEN};
 use plumb::cpu::pixel::ExactTracer;
-use plumb::jitter::Sampling;
-use plumb::prepare::ViewParameters;
-use plumb::render::Settings;
+use plumb::jitter::Jitter;
+use plumb::render::{SamplePattern, Settings};
 use plumb::scene::Scene;
 use plumb::shader::pack::Packed;
 
 use super::pictures::{Count, without_literal_bounds};
 use crate::common;
 
-/// Columns and rows: not a multiple of the lanes of any vector.
+/// Columns and rows of pictures of a sample a pixel and of several: not a multiple of the lanes of any vector.
 const SIZE: [u32; 2] = [93, 61];
+const SMALL: [u32; 2] = [47, 31];
 
 /// The words of all pixels, with each kind of vectors.
-fn words(lanes: &Lanes) -> Vec<(&'static str, Vec<u32>)> {
+fn words(
+    lanes: &Lanes,
+    jitter: &Jitter,
+    [width, height]: [u32; 2],
+) -> Vec<(&'static str, Vec<u32>)> {
     let all = lanes.with_each_vector().into_iter();
     all.map(|(name, lanes)| {
-        let mut words = vec![0; (SIZE[0] * SIZE[1]) as usize];
-        for (y, row) in (0..).zip(words.chunks_mut(SIZE[0] as usize)) {
-            lanes.strip(0, y, row);
+        let mut words = vec![0; (width * height) as usize];
+        for (y, row) in (0..).zip(words.chunks_mut(width as usize)) {
+            common::row_by_lanes(&lanes, jitter, y, row);
         }
         (name, words)
     })
@@ -31,42 +35,54 @@ fn words(lanes: &Lanes) -> Vec<(&'static str, Vec<u32>)> {
 }
 
 /// All scenes of ours that ask so, packed and changed by `change`.
-fn count(asked: fn(&Scene) -> bool, change: fn(&mut Packed)) -> (Count, usize) {
-    let settings = Settings::default();
+fn count(
+    settings: &Settings,
+    asked: fn(&Scene) -> bool,
+    change: fn(&mut Packed),
+) -> (Count, usize) {
     let limits = settings.sample_limits();
+    let size = settings.supersampling().map_or(SIZE, |_| SMALL);
+    let [width, height] = size;
+    let jitter = settings.sampling(width, height);
     let (mut count, mut scenes) = (Count::default(), 0);
     for path in common::good_scenes() {
         let mut scene = common::read(&path);
-        scene.camera.pixeldim = SIZE;
+        scene.camera.pixeldim = size;
         if !asked(&scene) {
             continue;
         }
-        let exact_tracer =
-            ExactTracer::new(&scene, ViewParameters::from(settings.screen_tolerance));
-        let mut packed = Packed::prepared(exact_tracer.bounded(), &scene, &settings);
+        let exact_tracer = ExactTracer::new(&scene, settings.view());
+        let mut packed = Packed::prepared(exact_tracer.bounded(), &scene, settings);
         change(&mut packed);
-        let Some(lanes) = Lanes::of(Arc::new(packed), &settings) else {
+        let Some(lanes) = Lanes::of(Arc::new(packed), settings) else {
             continue;
         };
         scenes += 1;
-        let all = words(&lanes);
+        let all = words(&lanes, &jitter, size);
         let (_, first) = &all[0];
         for (name, words) in &all {
             let differ = first.iter().zip(words).filter(|(a, b)| a != b).count();
             assert_eq!(differ, 0, "{}: {name}", path.display());
         }
         // `certified` compares all pixels of these scenes with the oracle; where there are lights, f64 takes long.
-        let step = if scene.lights.is_empty() { 1 } else { 7 };
-        for (place, word) in (0..).zip(first).step_by(step) {
-            count.pixels += 1;
-            if *word >= OPEN {
-                continue;
+        let lit = !scene.lights.is_empty();
+        let step = if lit { 7 } else { 1 } * settings.samples;
+        for (y, row) in (0..).zip(first.chunks(width as usize)) {
+            let offsets = jitter.row(y);
+            for (x, word) in (0..).zip(row) {
+                if !(y * width + x).is_multiple_of(step) {
+                    continue;
+                }
+                count.pixels += 1;
+                if *word >= OPEN {
+                    continue;
+                }
+                let sampling = jitter.pixel(offsets.as_deref(), width as usize, x as usize);
+                let exact = exact_tracer.trace(&limits, sampling, x, y);
+                let [red, green, blue, _] = word.to_le_bytes();
+                count.sure += 1;
+                count.wrong += usize::from([red, green, blue] != exact.unwrap().bytes);
             }
-            let at = [place % SIZE[0], place / SIZE[0]];
-            let exact = exact_tracer.trace(&limits, Sampling::Once, at[0], at[1]);
-            let [red, green, blue, _] = word.to_le_bytes();
-            count.sure += 1;
-            count.wrong += usize::from([red, green, blue] != exact.unwrap().bytes);
         }
     }
     (count, scenes)
@@ -74,7 +90,7 @@ fn count(asked: fn(&Scene) -> bool, change: fn(&mut Packed)) -> (Count, usize) {
 
 #[test]
 fn what_lanes_are_sure_of_is_right_and_the_same_in_all_widths() {
-    let (count, scenes) = count(|_| true, |_| ());
+    let (count, scenes) = count(&Settings::default(), |_| true, |_| ());
     assert!(scenes > 150, "{scenes} scenes");
     assert_eq!(count.wrong, 0, "{count:?}");
     // The others are ties, and what is made to be hard.
@@ -83,6 +99,28 @@ fn what_lanes_are_sure_of_is_right_and_the_same_in_all_widths() {
 
 #[test]
 fn lanes_without_bounds_are_noticed() {
-    let (count, _) = count(|scene| scene.lights.is_empty(), without_literal_bounds);
+    let unlit = |scene: &Scene| scene.lights.is_empty();
+    let (count, _) = count(&Settings::default(), unlit, without_literal_bounds);
     assert!(count.wrong > 20, "{count:?}");
+}
+
+/// Fewer samples than lanes, as many as some, more than all; by the hash, and as the course's program had them.
+#[test]
+fn what_lanes_are_sure_of_pixels_of_several_samples_is_right() {
+    for (samples, jitter) in [
+        (3, SamplePattern::Course),
+        (16, SamplePattern::Hash),
+        (21, SamplePattern::Hash),
+    ] {
+        let settings = Settings {
+            samples,
+            jitter,
+            ..Settings::default()
+        };
+        let (count, scenes) = count(&settings, |_| true, |_| ());
+        println!("{samples} samples, {jitter:?}, {scenes} scenes: {count:?}");
+        assert!(scenes > 150, "{scenes} scenes");
+        assert_eq!(count.wrong, 0, "{count:?}");
+        assert!(count.sure * 10 > count.pixels * 7, "{count:?}");
+    }
 }

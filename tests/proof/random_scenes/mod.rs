@@ -124,11 +124,12 @@ fn try_scene(plan: &Plan, gpu_too: bool) -> Tried {
 fn with_lanes(scene: &Scene, wanted: &Settings, rgb: &[u8]) -> Vec<(String, Vec<u8>)> {
     let lanes = Lanes::new(wanted, || Arc::new(Packed::new(scene, wanted)));
     let [width, height] = scene.camera.pixeldim;
+    let jitter = wanted.sampling(width, height);
     let picture = |(name, lanes): (&str, Lanes)| {
         let mut words = vec![OPEN; width as usize];
         let mut rgb = rgb.to_vec();
         for (y, row) in (0..height).rev().zip(rgb.chunks_mut(3 * width as usize)) {
-            lanes.strip(0, y, &mut words);
+            common::row_by_lanes(&lanes, &jitter, y, &mut words);
             for (pixel, word) in row.chunks_mut(3).zip(&words) {
                 if *word < OPEN {
                     pixel.copy_from_slice(&word.to_le_bytes()[..3]);

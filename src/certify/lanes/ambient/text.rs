@@ -41,6 +41,7 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const NEAREST: f32 = 9.094947e-13;
     pub(in crate::certify::lanes) const NORMAL_ROUNDINGS: f32 = 7.5;
     pub(in crate::certify::lanes) const CLOSE: f32 = 1.4000001;
+    pub(in crate::certify::lanes) const HALF_OPEN: f32 = 0.51000005;
     pub(in crate::certify::lanes) const WEIGHT_ROUNDINGS: f32 = 2.5;
     pub(in crate::certify::lanes) const INDEX_ROUNDINGS: f32 = 5.5;
     pub(in crate::certify::lanes) const MOST_INDEX: f32 = 1048576.0;
@@ -56,6 +57,7 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const UNDECIDED: u32 = 4278190080;
     pub(in crate::certify::lanes) const HALF_ROOT_3: f32 = 0.8660254;
     pub(in crate::certify::lanes) const T_FAR: f32 = 1e30;
+    pub(in crate::certify::lanes) const STEPS_LIMIT: u32 = 50000;
 }
 
 /// What is private to the lanes.
@@ -157,6 +159,7 @@ record! {
 /// A primary ray: base viewpoint (the origin), direction w through the screen, not of unit length.
 Ray {
     pixel: Vec2<I<S>>,
+    offset: Vec2<F<S>>,
     w: Vec3<F<S>>,
     w2: F<S>,
     inverse_length: F<S>,
@@ -206,14 +209,19 @@ pub(super) fn from_pixel<'a, S: Simd>(
     ray: Ray<S>,
     anchor: Vec2<I<S>>,
 ) -> Vec2<F<S>> {
-    (ray.pixel - anchor).map(|v| v.as_f32())
+    (ray.pixel - anchor).map(|v| v.as_f32()) + ray.offset
 }
 
 /// The ray through a pixel, (0, 0) at the bottom left. Near the viewpoint's own column and row (CAMERA_ANCHOR) w.x and
 /// w.y are small, and keep their relative accuracy.
 #[inline(always)]
-pub(super) fn camera_getdir<'a, S: Simd>(scene: &'a Scene<'a, S>, pixel: Vec2<I<S>>) -> Ray<S> {
+pub(super) fn camera_getdir<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    pixel: Vec2<I<S>>,
+    offset: Vec2<F<S>>,
+) -> Ray<S> {
     let mut ray = <Ray<S>>::zero(scene.simd);
+    ray.offset = offset;
     ray.pixel = pixel;
     let pixel_2 = from_pixel(scene, ray, scene.vec2_i32(scene.camera_anchor));
     ray.w = Vec3::new(
@@ -270,6 +278,30 @@ pub(super) fn unit_direction<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>) 
     let v_2 = ray.w * v;
     let step = unit_step(scene, v_2);
     step
+}
+
+/// Where in its pixel a sample's ray passes: the PCG 3D hash of Jarzynski and Olano. `hash` in src/jitter.rs has the
+/// same steps, to the bit.
+#[inline(always)]
+pub(super) fn jitter_hash<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    pixel: Vec2<I<S>>,
+    number: U<S>,
+) -> Vec2<F<S>> {
+    let mut v = Vec3::new(
+        pixel.map(|v| v.as_u32()).x,
+        pixel.map(|v| v.as_u32()).y,
+        number,
+    ) * 1664525
+        + Vec3::splat(scene.u32(1013904223));
+    v.x = v.x + v.y * v.z;
+    v.y = v.y + v.z * v.x;
+    v.z = v.z + v.x * v.y;
+    v = v ^ v >> Vec3::splat(scene.u32(16));
+    v.x = v.x + v.y * v.z;
+    v.y = v.y + v.z * v.x;
+    (Vec2::new(v.x, v.y) >> Vec2::splat(scene.u32(22))).map(|v| v.as_f32()) * 0.0009765625
+        - Vec2::splat(scene.f32(0.5))
 }
 
 /// The plane as a primary ray meets it.
@@ -1491,6 +1523,11 @@ pub(super) fn hit_decides<'a, S: Simd>(
             on,
             dark.select(scene.u32(0), scene.u32(constants::UNDECIDED)),
         );
+        let most = (hit.inverse + hit.error).max(hit.rival) * ray.inverse_length * scene.bright;
+        traced.color.set(on, Vec3::splat(0.5 * most));
+        traced
+            .error
+            .set(on, Vec3::splat(constants::HALF_OPEN * most));
         result.set(on, scene.mask(true));
         gone = gone | on;
     }

@@ -10,6 +10,8 @@ use super::text::{
 };
 use super::walk::Walk;
 use crate::certify::lanes::scene::Scene;
+#[cfg(test)]
+use crate::certify::lanes::tests::{self, Fault};
 use crate::certify::lanes::vector::{Lanewise as _, M, U};
 use crate::shader::records::{WorldPlane, WorldSphere};
 
@@ -143,7 +145,10 @@ fn any_hit<'a, S: Simd>(
                 let hits = sphere_hits_from(scene, sphere, ray, range);
                 found = found.max(occludes(scene, hits, range));
             }
-            if !(on & found.ne(scene.u32(2))).any() {
+            let open = on & found.ne(scene.u32(2));
+            #[cfg(test)]
+            let open = tests::inverted(Fault::ShadowInverted, open);
+            if !open.any() {
                 return found;
             }
             for plane in lit.planes {

@@ -8,6 +8,12 @@ pub(super) mod by_hand;
 #[path = "../primary.rs"]
 pub(super) mod primary;
 #[allow(
+    clippy::duplicate_mod,
+    reason = "it is about the types of the text beside it"
+)]
+#[path = "../row.rs"]
+pub(super) mod row;
+#[allow(
     clippy::all,
     unused,
     unused_comparisons,

@@ -283,6 +283,7 @@ record! {
 /// A primary ray: base viewpoint (the origin), direction w through the screen, not of unit length.
 Ray {
     pixel: Vec2<I<S>>,
+    offset: Vec2<F<S>>,
     w: Vec3<F<S>>,
     w2: F<S>,
     inverse_length: F<S>,
@@ -366,14 +367,19 @@ pub(super) fn from_pixel<'a, S: Simd>(
     ray: Ray<S>,
     anchor: Vec2<I<S>>,
 ) -> Vec2<F<S>> {
-    (ray.pixel - anchor).map(|v| v.as_f32())
+    (ray.pixel - anchor).map(|v| v.as_f32()) + ray.offset
 }
 
 /// The ray through a pixel, (0, 0) at the bottom left. Near the viewpoint's own column and row (CAMERA_ANCHOR) w.x and
 /// w.y are small, and keep their relative accuracy.
 #[inline(always)]
-pub(super) fn camera_getdir<'a, S: Simd>(scene: &'a Scene<'a, S>, pixel: Vec2<I<S>>) -> Ray<S> {
+pub(super) fn camera_getdir<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    pixel: Vec2<I<S>>,
+    offset: Vec2<F<S>>,
+) -> Ray<S> {
     let mut ray = <Ray<S>>::zero(scene.simd);
+    ray.offset = offset;
     ray.pixel = pixel;
     let pixel_2 = from_pixel(scene, ray, scene.vec2_i32(scene.camera_anchor));
     ray.w = Vec3::new(
@@ -430,6 +436,30 @@ pub(super) fn unit_direction<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>) 
     let v_2 = ray.w * v;
     let step = unit_step(scene, v_2);
     step
+}
+
+/// Where in its pixel a sample's ray passes: the PCG 3D hash of Jarzynski and Olano. `hash` in src/jitter.rs has the
+/// same steps, to the bit.
+#[inline(always)]
+pub(super) fn jitter_hash<'a, S: Simd>(
+    scene: &'a Scene<'a, S>,
+    pixel: Vec2<I<S>>,
+    number: U<S>,
+) -> Vec2<F<S>> {
+    let mut v = Vec3::new(
+        pixel.map(|v| v.as_u32()).x,
+        pixel.map(|v| v.as_u32()).y,
+        number,
+    ) * 1664525
+        + Vec3::splat(scene.u32(1013904223));
+    v.x = v.x + v.y * v.z;
+    v.y = v.y + v.z * v.x;
+    v.z = v.z + v.x * v.y;
+    v = v ^ v >> Vec3::splat(scene.u32(16));
+    v.x = v.x + v.y * v.z;
+    v.y = v.y + v.z * v.x;
+    (Vec2::new(v.x, v.y) >> Vec2::splat(scene.u32(22))).map(|v| v.as_f32()) * 0.0009765625
+        - Vec2::splat(scene.f32(0.5))
 }
 
 /// The plane as a primary ray meets it.

@@ -9,6 +9,8 @@ use super::by_hand::Tree;
 use super::text::SecondaryRay;
 use super::text::constants::{BOX_ROUNDINGS, BVH_FAR, BVH_NEAR, SECOND_ORDER, U};
 use crate::certify::lanes::scene::Scene;
+#[cfg(test)]
+use crate::certify::lanes::tests::{self, Fault};
 use crate::certify::lanes::vector::{F, M, Vec3};
 
 /// Boxes wait at most so many: trees are no deeper.
@@ -53,6 +55,8 @@ impl<S: Simd> Walk<S> {
         on: M<S>,
         reach: F<S>,
     ) -> Option<Range<usize>> {
+        #[cfg(test)]
+        let on = tests::inverted(Fault::BoxInverted, on);
         while self.count > 0 {
             self.count -= 1;
             let mut index = self.waiting[self.count];
