@@ -30,9 +30,20 @@ struct PathPoint {
 // Whether every channel of a weight is of ordinary size, or 0 because a factor of it is 0: not because f32 could not
 // hold it. That is asked of exponents, since a compiler may take it for granted that no number is too large for f32.
 fn ordinary(before: vec3f, factor: vec3f, weight: vec3f) -> bool {
+//#if double
+    let exponent = (bitcast<vec3u>(vec3<single>(weight)) >> vec3u(23u)) & vec3u(255u);
+//#else
     let exponent = (bitcast<vec3u>(weight) >> vec3u(23u)) & vec3u(255u);
+//#end
+//#if double
+    // naga does not fold the conversion of an f64 that it knows.
+    let limits = vec2u(vec2f(WEIGHT_LEAST, WEIGHT_MOST) + f32(dispatch.zero));
+    let least = limits.x;
+    let inside = exponent - vec3u(least) <= vec3u(limits.y - least);
+//#else
     let least = u32(WEIGHT_LEAST);
     let inside = exponent - vec3u(least) <= vec3u(u32(WEIGHT_MOST) - least);
+//#end
     return all(inside | (before == vec3f(0.0)) | (factor == vec3f(0.0)));
 }
 //#end

@@ -4,6 +4,18 @@
 // are certified: it carries an error bound or asks one.
 // Bounds are derived in docs/NUMERICS.md; U and the constants named after what they bound come from the host.
 
+//#if double
+// A driver's own function may be as far off as that of f32.
+fn inverse_root(square: f32) -> f32 {
+    return 1.0 / sqrt(square);
+}
+
+// The f64 of two words, the lower half first.
+fn double_of(low: u32, high: u32) -> f32 {
+    return bitcast<f32>(u64(low) | (u64(high) << 32u));
+}
+
+//#end
 //#if any_object
 // A primary ray: base viewpoint (the origin), direction w through the screen, not of unit length.
 struct Ray {
@@ -68,12 +80,21 @@ fn camera_setpix(color: vec3f) -> u32 {
 // Keeps the compiler from looking through: what stands behind this was rounded as it is, whatever the driver does with
 // the rest. `dispatch.zero` is 0, which only the host knows.
 //#if certified
+//#if double
+fn barrier(v: vec3f) -> vec3f {
+    return bitcast<vec3f>(bitcast<vec3<u64>>(v) ^ vec3<u64>(u64(dispatch.zero)));
+}
+fn barrier1(v: f32) -> f32 {
+    return bitcast<f32>(bitcast<u64>(v) ^ u64(dispatch.zero));
+}
+//#else
 fn barrier(v: vec3f) -> vec3f {
     return bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(dispatch.zero));
 }
 fn barrier1(v: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(v) ^ dispatch.zero);
 }
+//#end
 //#else
 fn barrier(v: vec3f) -> vec3f {
     return v;

@@ -11,19 +11,40 @@ const LN_2 = 0.6931471805599453;
 fn power(y: f32, n: f32) -> vec2f {
     // x = m·2^e, m from √½ to √2.
     let x = barrier1(1.0 - y);
+//#if double
+    let e = (bitcast<i32>(single(x)) - 0x3f3504f3) >> 23u;
+    let m = x * f32(bitcast<single>((127 - e) << 23u));
+//#else
     let e = (bitcast<i32>(x) - 0x3f3504f3) >> 23u;
     let m = bitcast<f32>(bitcast<i32>(x) - (e << 23u));
+//#end
     // log m = −2·artanh z
     let z = select(1.0 - m, y, e == 0) / (1.0 + m);
     let z2 = z * z;
-    let log = f32(e) - LOG2_E_TWICE * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0))));
+//#if double
+    let least = 1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 * (1.0 / 11.0 + z2 * (1.0 / 13.0 + z2 * (1.0 / 15.0
+        + z2 * (1.0 / 17.0 + z2 * (1.0 / 19.0 + z2 * (1.0 / 21.0)))))));
+//#else
+    let least = 1.0 / 7.0;
+//#end
+    let log = f32(e) - LOG2_E_TWICE * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * least)));
     let q = barrier1(max(n * log, -100.0));
     let whole = round(q);
     let w = (q - whole) * LN_2;
+//#if double
+    let last = 1.0 / 5040.0 + w * (1.0 / 40320.0 + w * (1.0 / 362880.0 + w * (1.0 / 3628800.0
+        + w * (1.0 / 39916800.0 + w * (1.0 / 479001600.0 + w * (1.0 / 6227020800.0))))));
+//#else
+    let last = 1.0 / 5040.0;
+//#end
     let part = 1.0 + w * (1.0 + w * (1.0 / 2.0 + w * (1.0 / 6.0 + w * (1.0 / 24.0 + w * (1.0 / 120.0
-        + w * (1.0 / 720.0 + w * (1.0 / 5040.0)))))));
+        + w * (1.0 / 720.0 + w * last))))));
     let error = select((POWER_ROUNDINGS - LOG_ROUNDINGS * q) * U, 1.0, q == -100.0);
+//#if double
+    return vec2f(part * f32(bitcast<single>((i32(whole) + 127) << 23u)), error);
+//#else
     return vec2f(part * bitcast<f32>((i32(whole) + 127) << 23u), error);
+//#end
 }
 
 // The power of the cosine between the direction `half`, of any length, and a unit normal, at the upper end of what it

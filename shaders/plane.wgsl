@@ -64,8 +64,15 @@ fn polygon_hits(polygon: Polygon, ray: Ray) -> PrimaryIntersection {
 
 // The third side of the triangle whose record says so in `bounded`: within, row·P is at least the fourth component.
 fn third_side(bounded: u32) -> vec4f {
+//#if double
+    let one = objects[THIRD_SIDES + 2u * (bounded - 2u)];
+    let two = objects[THIRD_SIDES + 2u * (bounded - 2u) + 1u];
+    return vec4f(double_of(one.material, one.kind), double_of(one.group, one.place),
+        double_of(two.material, two.kind), double_of(two.group, two.place));
+//#else
     let side = objects[THIRD_SIDES + bounded - 2u];
     return bitcast<vec4f>(vec4u(side.material, side.kind, side.group, side.place));
+//#end
 }
 //#end
 

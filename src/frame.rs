@@ -29,6 +29,8 @@ pub type StopRequested<'a> = dyn Fn() -> bool + Sync + 'a;
 pub enum DecidedBy {
     /// The GPU, in f32, and it was sure.
     Gpu,
+    /// The GPU, in f64, likewise.
+    Double,
     /// The CPU, in f32, likewise.
     Single,
     /// f64 with error bounds.
@@ -45,8 +47,9 @@ pub enum DecidedBy {
 
 impl DecidedBy {
     /// All of them, in order; each stands at its own number.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Gpu,
+        Self::Double,
         Self::Single,
         Self::Bounded,
         Self::Pairs,
@@ -59,6 +62,7 @@ impl DecidedBy {
     pub fn name(self) -> &'static str {
         match self {
             Self::Gpu => "gpu",
+            Self::Double => "gpu_f64",
             Self::Single => "f32",
             Self::Bounded => "f64",
             Self::Pairs => "pairs",

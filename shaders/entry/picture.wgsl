@@ -13,14 +13,9 @@ fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
 // The words of a workgroup: a word of a file's picture holds bytes of pixels that two invocations made.
 var<workgroup> handed: array<u32, WORKGROUP * WORKGROUP>;
 
-// Groups of a row of the dispatch, filled up.
-fn groups_of_row() -> u32 {
-    return (dispatch.size.x + PACKED_GROUP - 1u) / PACKED_GROUP;
-}
-
 // Stores a word of the pixels' buffer.
 fn put(at: u32, word: u32) {
-//#if partial
+//#if records
     pixels.words[at] = word;
 //#else
     pixels[at] = word;
@@ -33,7 +28,13 @@ fn put(at: u32, word: u32) {
 fn make_pixel(pixel: vec2i) -> u32 {
     let traced = ray_trace(camera_getdir(pixel));
 //#if certified
-    return camera_setpix(traced.color, traced.error) | traced.verdict;
+    let bytes = camera_setpix(traced.color, traced.error) | traced.verdict;
+//#if listed
+    if bytes >= UNDECIDED {
+        list_doubt(pixel);
+    }
+//#end
+    return bytes;
 //#else
     return camera_setpix(traced.color) | traced.verdict;
 //#end
@@ -154,13 +155,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
 //#if partial
     if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
-        let record = atomicAdd(&pixels.partials, 1u);
+        let record = atomicAdd(&pixels.records, 1u);
         if record < dispatch.room {
-//#if packed
-            let first = (PACKED_WORDS + 1u) * groups_of_row() * dispatch.size.y + record * PARTIAL_WORDS;
-//#else
-            let first = dispatch.size.x * dispatch.size.y + record * PARTIAL_WORDS;
-//#end
+            let first = record_words(record);
             let color = bitcast<vec3u>(part.color);
             let error = bitcast<vec3u>(part.error);
             pixels.words[first] = place;
@@ -174,6 +171,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 pixels.words[first + 7u + i] = summed[i];
             }
         }
+    }
+//#end
+//#if listed
+    if bytes >= UNDECIDED {
+        list_doubt(pixel);
     }
 //#end
 //#if packed
@@ -213,7 +215,7 @@ fn main(
     }
 }
 //#else
-//#if partial
+//#if records
     pixels.words[place] = bytes;
 //#else
 //#if values

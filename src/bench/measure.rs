@@ -218,6 +218,7 @@ impl Subject<'_> {
         let [width, height] = self.scene.camera.pixeldim;
         let frame = bands::Frame {
             dispatch_seconds: bands::DISPATCH_SECONDS,
+            double: None,
             canvas: None,
             width,
             rows: 0..height,

@@ -103,8 +103,8 @@ pub struct CpuSeconds([f64; DecidedBy::ALL.len()]);
 /// As a map from the name of what decided to its seconds; the GPU's are counted elsewhere.
 impl Serialize for CpuSeconds {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(DecidedBy::ALL.len() - 1))?;
-        for by in &DecidedBy::ALL[1..] {
+        let mut map = serializer.serialize_map(Some(DecidedBy::ALL.len() - 2))?;
+        for by in &DecidedBy::ALL[2..] {
             map.serialize_entry(by.name(), &self.0[*by as usize])?;
         }
         map.end()

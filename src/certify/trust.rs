@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::gpu::device::Gpu;
+use crate::gpu::selftest::Outcome;
 use crate::gpu::{GpuError, selftest};
 
 /// What passed since the process started.
@@ -37,29 +38,51 @@ pub fn check(gpu: &Gpu, folder: Option<&Path>) -> Result<(), GpuError> {
 /// Tests the device, unless it is known to pass. Returns what failed, if anything; that the test cannot be run is a
 /// failure.
 pub fn doubts(gpu: &Gpu, folder: Option<&Path>) -> Option<String> {
-    let note = note(gpu);
+    passes(gpu, &note(gpu), folder, selftest::run)
+}
+
+/// Whether the device has f64 and computes with it as it should.
+pub fn has_doubles(gpu: &Gpu, folder: Option<&Path>) -> bool {
+    if !gpu.doubles {
+        return false;
+    }
+    let failures = passes(gpu, &note_of_doubles(gpu), folder, selftest::run_double);
+    if let Some(failures) = &failures {
+        log::info!("{} is not trusted with f64: {failures}", gpu.name);
+    }
+    failures.is_none()
+}
+
+/// What fails of a test that is remembered by a note, if anything.
+fn passes(
+    gpu: &Gpu,
+    note: &str,
+    folder: Option<&Path>,
+    test: fn(&Gpu) -> Result<Vec<Outcome>, GpuError>,
+) -> Option<String> {
     // Another version of the driver must not pass for this one.
     let folder = folder.filter(|_| gpu.tells_version);
-    if is_known(&note, folder) {
+    if is_known(note, folder) {
         return None;
     }
-    let failures = match selftest::run(gpu) {
+    let failures = match test(gpu) {
         Ok(outcomes) => selftest::failures(&outcomes),
         Err(error) => Some(error.to_string()),
     };
     if failures.is_none() {
-        remember(&note, folder);
+        remember(note, folder);
     }
     failures
 }
 
 /// Takes the trust back: the next certified rendering tests the device again.
 pub fn revoke(gpu: &Gpu, folder: Option<&Path>) {
-    let note = note(gpu);
-    passed().remove(&note);
-    if let Some(folder) = folder {
-        // A file that is missing needs no removing.
-        let _ = fs::remove_file(file(&note, folder));
+    for note in [note(gpu), note_of_doubles(gpu)] {
+        passed().remove(&note);
+        if let Some(folder) = folder {
+            // A file that is missing needs no removing.
+            let _ = fs::remove_file(file(&note, folder));
+        }
     }
 }
 
@@ -69,6 +92,15 @@ fn note(gpu: &Gpu) -> String {
         "plumb: this adapter passed the self-test. This file may be deleted.\n{}\ntest {:016x}\n",
         gpu.identity,
         selftest::version()
+    )
+}
+
+/// The same of its f64.
+fn note_of_doubles(gpu: &Gpu) -> String {
+    format!(
+        "plumb: this adapter passed the self-test with f64. This file may be deleted.\n{}\ntest {:016x}\n",
+        gpu.identity,
+        selftest::double_version()
     )
 }
 
@@ -188,5 +220,32 @@ pub(crate) mod tests {
             0,
             "nor what cannot be told from its next version"
         );
+    }
+
+    /// Needs an adapter, and fails without one. A device whose f64 is wrong does without; it is as good as before.
+    #[test]
+    fn f64_is_trusted_by_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut gpu = crate::gpu::adapters::open(None).unwrap();
+        gpu.identity += " of another test";
+        gpu.tells_version = true;
+        let has = gpu.doubles;
+        selftest::tests::spoil_next_double(Some(0));
+        assert!(!has_doubles(&gpu, Some(folder.path())));
+        assert_eq!(doubts(&gpu, Some(folder.path())), None);
+        selftest::tests::spoil_next_double(None);
+        assert_eq!(has_doubles(&gpu, Some(folder.path())), has);
+        assert_eq!(
+            fs::read_dir(folder.path()).unwrap().count(),
+            1 + usize::from(has)
+        );
+        // It would fail now, if it were asked.
+        selftest::tests::spoil_next_double(Some(0));
+        assert_eq!(has_doubles(&gpu, Some(folder.path())), has);
+        revoke(&gpu, Some(folder.path()));
+        assert!(!has_doubles(&gpu, Some(folder.path())));
+        selftest::tests::spoil_next_double(None);
+        gpu.doubles = false;
+        assert!(!has_doubles(&gpu, None));
     }
 }

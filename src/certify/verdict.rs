@@ -6,6 +6,7 @@ use crate::frame::{Band, DecidedBy};
 pub fn color(by: DecidedBy) -> [u8; 3] {
     match by {
         DecidedBy::Gpu => [40, 40, 40],
+        DecidedBy::Double => [40, 80, 110],
         DecidedBy::Single => [80, 80, 80],
         DecidedBy::Bounded => [60, 110, 200],
         DecidedBy::Pairs => [70, 180, 120],
@@ -19,6 +20,7 @@ pub fn color(by: DecidedBy) -> [u8; 3] {
 pub fn meaning(by: DecidedBy) -> &'static str {
     match by {
         DecidedBy::Gpu => "the GPU, which is sure",
+        DecidedBy::Double => "the GPU in f64, which is sure",
         DecidedBy::Single => "f32 with error bounds, on the CPU",
         DecidedBy::Bounded => "f64 with error bounds",
         DecidedBy::Pairs => "two f64 for a number, with error bounds",

@@ -63,16 +63,17 @@ fn to_text(adapters: &[AdapterSummary], chosen: Option<usize>, wanted: Option<&s
             format!("{} invocations at most", adapter.max_workgroup),
         );
         line("timestamps", yes(adapter.timestamps));
-        line(
-            "f64 in shaders",
-            format!("{} (not needed)", yes(adapter.shader_f64)),
-        );
-        if let Some(outcomes) = &adapter.selftest {
+        line("f64 in shaders", yes(adapter.shader_f64));
+        for (name, outcomes) in [
+            ("self-test", &adapter.selftest),
+            ("with f64", &adapter.selftest_f64),
+        ] {
+            let Some(outcomes) = outcomes else { continue };
             let failed: Vec<_> = outcomes
                 .iter()
                 .filter_map(|outcome| Some((outcome, outcome.failure.as_ref()?)))
                 .collect();
-            line("self-test", tested(outcomes.len(), failed.len()));
+            line(name, tested(outcomes.len(), failed.len()));
             for (outcome, failure) in failed {
                 line(
                     "",
@@ -197,6 +198,7 @@ mod tests {
             shader_f64: false,
             problem: problem.map(str::to_owned),
             selftest: problem.is_none().then(Vec::new),
+            selftest_f64: None,
         }
     }
 

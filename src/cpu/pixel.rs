@@ -301,7 +301,7 @@ impl<'a> ExactTracer<'a> {
     }
 
     /// The scene in pairs of f64.
-    fn pairs(&self) -> &Prepared<Pair> {
+    pub fn pairs(&self) -> &Prepared<Pair> {
         self.pairs
             .get_or_init(|| Prepared::again(self.scene, self.view, &self.bounded, self.sources()))
     }

@@ -38,6 +38,8 @@ pub struct AdapterSummary {
     pub problem: Option<String>,
     /// How the self-test went, check by check; none where plumb cannot use the adapter.
     pub selftest: Option<Vec<Outcome>>,
+    /// How it passed the self-test with f64, if it has that.
+    pub selftest_f64: Option<Vec<Outcome>>,
 }
 
 impl AdapterSummary {
@@ -56,7 +58,14 @@ pub fn list() -> Vec<AdapterSummary> {
     let tested = |adapter: &wgpu::Adapter| {
         let mut summary = summary(adapter);
         if summary.problem.is_none() {
-            match Gpu::open(adapter).and_then(|gpu| selftest::run(&gpu)) {
+            let tested = Gpu::open(adapter).and_then(|gpu| {
+                summary.selftest_f64 = gpu
+                    .doubles
+                    .then(|| selftest::run_double(&gpu))
+                    .transpose()?;
+                selftest::run(&gpu)
+            });
+            match tested {
                 Ok(outcomes) => summary.selftest = Some(outcomes),
                 Err(error) => summary.problem = Some(error.to_string()),
             }
@@ -304,6 +313,7 @@ fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
         shader_f64: features.contains(wgpu::Features::SHADER_F64),
         problem: problem(adapter),
         selftest: None,
+        selftest_f64: None,
     }
 }
 

@@ -8,6 +8,12 @@ use super::bands::buffers::BufferPool;
 use super::submit_gate::SubmitGate;
 use crate::shader::feature_set::SOFTWARE_LANES;
 
+/// What shaders with f64 need.
+const DOUBLES: wgpu::Features = wgpu::Features::SHADER_F64.union(wgpu::Features::SHADER_INT64);
+
+/// What a device is to have, if the adapter does.
+const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(DOUBLES);
+
 /// An open device.
 #[derive(Debug)]
 pub struct Gpu {
@@ -23,6 +29,8 @@ pub struct Gpu {
     pub tells_version: bool,
     /// Whether kernels can be timed on the device.
     pub timestamps: bool,
+    /// Whether shaders may have f64, and u64 for its bits.
+    pub doubles: bool,
     /// Whether it is a program on the CPU.
     pub software: bool,
     /// How many invocations share a limit on loops: lavapipe's lanes of a vector; 1 on a GPU, where there is no limit.
@@ -84,11 +92,7 @@ impl Gpu {
         let timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("plumb"),
-            required_features: if timestamps {
-                wgpu::Features::TIMESTAMP_QUERY
-            } else {
-                wgpu::Features::empty()
-            },
+            required_features: adapter.features() & WANTED,
             required_limits: adapter.limits(),
             ..Default::default()
         };
@@ -114,6 +118,7 @@ impl Gpu {
             identity: identity(&info),
             tells_version: !info.driver_info.is_empty(),
             timestamps,
+            doubles: adapter.features().contains(DOUBLES),
             software,
             lanes,
             submit_gate: SubmitGate::default(),

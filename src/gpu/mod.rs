@@ -10,6 +10,7 @@ pub mod bands;
 pub mod candidates;
 pub mod canvas;
 pub mod device;
+pub mod double;
 pub mod pipeline;
 pub mod selftest;
 pub mod single;

@@ -7,11 +7,13 @@ use wgpu::util::DeviceExt as _;
 
 use super::GpuError;
 use super::device::Gpu;
-use crate::shader::binding::{BINDINGS, DISPATCH, OFFSETS, PIXELS};
+use crate::shader::binding::{Binding, DISPATCH, OFFSETS, PIXELS};
 use crate::shader::feature::{Feature, Features};
 use crate::shader::feature_set::FeatureSet;
 use crate::shader::form::Form;
+use crate::shader::format::Format;
 use crate::shader::pack::Packed;
+use crate::shader::record::Wide as _;
 use crate::shader::records::CameraNumbers;
 
 /// A shader ready to run on a scene.
@@ -35,7 +37,11 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// If the device does not allow so large a buffer, or so many.
-    pub fn new(gpu: &Gpu, packed: &Packed, set: &FeatureSet) -> Result<Self, GpuError> {
+    pub fn new<F: Format>(
+        gpu: &Gpu,
+        packed: &Packed<F>,
+        set: &FeatureSet,
+    ) -> Result<Self, GpuError> {
         let features = set.features();
         let has = |feature: Feature| features.contains(&feature);
         let buffers = upload(gpu, packed, &features)?;
@@ -55,16 +61,21 @@ impl SceneBuffers {
 
 impl Pipeline {
     /// Compiles `wgsl`, composed for `packed` with the features of `set`, and uploads the scene.
-    pub fn new(gpu: &Gpu, packed: &Packed, set: &FeatureSet, wgsl: &str) -> Result<Self, GpuError> {
+    pub fn new<F: Format>(
+        gpu: &Gpu,
+        packed: &Packed<F>,
+        set: &FeatureSet,
+        wgsl: &str,
+    ) -> Result<Self, GpuError> {
         let buffers = SceneBuffers::new(gpu, packed, set)?;
         Ok(Self::of(gpu.compile(wgsl, "main")?, buffers, packed, set))
     }
 
     /// The compiled shader with its scene's buffers.
-    pub(crate) fn of(
+    pub(crate) fn of<F: Format>(
         pipeline: wgpu::ComputePipeline,
         buffers: SceneBuffers,
-        packed: &Packed,
+        packed: &Packed<F>,
         set: &FeatureSet,
     ) -> Self {
         let features = set.features();
@@ -72,7 +83,7 @@ impl Pipeline {
         Self {
             pipeline,
             form: Form::of(set),
-            camera: has(Feature::Moving).then_some(packed.camera.numbers),
+            camera: has(Feature::Moving).then(|| F::wide(&packed.camera.numbers).narrow()),
             buffers,
         }
     }
@@ -136,16 +147,19 @@ impl Compiled {
 }
 
 /// The scene's buffers among the bindings that these features ask for.
-fn upload(
+fn upload<F: Format>(
     gpu: &Gpu,
-    packed: &Packed,
+    packed: &Packed<F>,
     features: &Features,
 ) -> Result<Vec<(u32, wgpu::Buffer)>, GpuError> {
     let mut buffers = Vec::new();
-    for binding in BINDINGS.iter().filter(|binding| (binding.holds)(features)) {
+    for binding in Binding::<F>::ALL
+        .iter()
+        .filter(|binding| (binding.holds)(features))
+    {
         if let Some(contents) = binding.contents {
             let contents = contents(packed);
-            let buffer = buffer(gpu, binding.what, contents.bytes())?;
+            let buffer = buffer(gpu, binding.what, &contents.bytes())?;
             buffers.push((binding.number, buffer));
         }
     }

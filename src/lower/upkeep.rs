@@ -17,6 +17,8 @@ use crate::shader::pack::Packed;
 /// Everything that scenes may have, so that one text serves all.
 fn everything(lit: bool) -> FeatureSet {
     FeatureSet {
+        listed: false,
+        double: false,
         planes: true,
         polygons: true,
         front: true,

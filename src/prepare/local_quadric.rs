@@ -1,28 +1,28 @@
 //! A quadric's equation about a point next to it, which f32 has exactly: what `shaders/quadric.wgsl` starts from.
 
 use super::quadric::Moved;
+use crate::real::Real;
 use crate::real::rational::{Ratio, dot, is_zero, power_of_two, ratio};
-use crate::real::{Bounded, Real as _};
 use crate::scene::{Scene, Shape};
 
 /// The equation about a point near the surface, for f32: p·Ap + 2·slope·p + constant, p from that point. Matrices are
 /// symmetric: their diagonal, then yz, xz, xy.
 #[derive(Debug, Clone)]
-pub struct Local {
+pub struct Local<R> {
     /// The point, from the viewpoint in units of 2^scale.
     pub center: [f32; 3],
     /// A.
-    pub square: [Bounded; 6],
+    pub square: [R; 6],
     /// The adjoint of A.
-    pub adjoint: [Bounded; 6],
+    pub adjoint: [R; 6],
     /// Half the gradient at the point.
-    pub slope: [Bounded; 3],
+    pub slope: [R; 3],
     /// The left side there.
-    pub constant: Bounded,
+    pub constant: R,
 }
 
 /// The equation of a curved quadric about its center; about a point of its axis or near its vertex where it has none.
-pub fn local(scene: &Scene, scale: i32, object: usize) -> Local {
+pub fn local<R: Real>(scene: &Scene, scale: i32, object: usize) -> Local<R> {
     let coefficients = match &scene.objects[object].shape {
         Shape::Quadric(quadric) => &quadric.coefficients,
         _ => &[0.0; 10],
@@ -57,10 +57,10 @@ pub fn local(scene: &Scene, scale: i32, object: usize) -> Local {
     let constant = dot(&at, &both) + &moved.constant;
     Local {
         center,
-        square: exact.0.each_ref().map(Bounded::ratio),
-        adjoint: adjoint.0.each_ref().map(Bounded::ratio),
-        slope: local_slope.each_ref().map(Bounded::ratio),
-        constant: Bounded::ratio(&constant),
+        square: exact.0.each_ref().map(R::ratio),
+        adjoint: adjoint.0.each_ref().map(R::ratio),
+        slope: local_slope.each_ref().map(R::ratio),
+        constant: R::ratio(&constant),
     }
 }
 

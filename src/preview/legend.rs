@@ -32,7 +32,8 @@ fn entry(ui: &mut Ui, by: DecidedBy) {
         .rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
     let dimmed = match by {
         DecidedBy::Gpu | DecidedBy::Single => " (the picture, dimmed)",
-        DecidedBy::Bounded
+        DecidedBy::Double
+        | DecidedBy::Bounded
         | DecidedBy::Pairs
         | DecidedBy::Multiprecision
         | DecidedBy::Exact

@@ -17,6 +17,7 @@ use crate::gpu::GpuError;
 use crate::gpu::bands::{self, Order, Rendered};
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
+use crate::gpu::double::Double;
 use crate::gpu::pipeline::{Compiled, Pipeline, SceneBuffers};
 use crate::jitter::Jitter;
 use crate::settings::Settings;
@@ -67,6 +68,8 @@ pub(super) struct Use<'a> {
     /// Whether fast shaders are those of a camera that moves.
     pub(super) moving: bool,
     pub(super) canvas: Option<&'a Canvas>,
+    /// What decides in f64 what f32 leaves open, if anything is to.
+    pub(super) double: Option<&'a Double>,
     pub(super) dispatch_seconds: f64,
     pub(super) stop: &'a StopRequested<'a>,
 }
@@ -113,6 +116,7 @@ fn render(
         jitter: &task.jitter,
         band_rows: task.settings.band_rows,
         dispatch_seconds: device.dispatch_seconds,
+        double: device.double,
         canvas: device.canvas,
     };
     let most = bands::tallest(device.gpu, &pipeline, &frame);
@@ -171,6 +175,9 @@ fn pipeline(
     }
     if device.canvas.is_none() {
         features = features.for_a_file(gpu.software);
+    }
+    if device.double.is_some() {
+        features = features.with_a_list();
     }
     let wgsl = compose(packed, &features, Entry::Picture);
     watch.lap(Phase::Pack);

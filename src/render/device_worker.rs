@@ -22,11 +22,15 @@ use crate::frame::Halt;
 use crate::gpu::GpuError;
 use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::device::Gpu;
+use crate::gpu::double::Double;
 use crate::shader::constants::LOOP_ITERATIONS;
 use crate::stopwatch::Phases;
 
 /// Bands that a device is given at once: two that it works on, and one that is being finished.
 const AT_ONCE: usize = 3;
+
+/// So many pixels have to be known before it is said whether f64 on a device is worth its time.
+const WEIGHED: u64 = 1024;
 
 /// How long a device's thread has to say what it did.
 const LAST_WORDS: Duration = Duration::from_secs(1);
@@ -77,6 +81,8 @@ pub(super) struct DeviceWorker<'a, 'r> {
     thread: Phases,
     /// How long the device may keep silent.
     patience: Duration,
+    /// Pixels that f64 was asked for.
+    listed: u64,
 }
 
 impl<'a, 'r> DeviceWorker<'a, 'r> {
@@ -89,6 +95,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             beside: Beside::default(),
             thread: Phases::default(),
             patience: patience(),
+            listed: 0,
         }
     }
 
@@ -160,13 +167,16 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             Here::Opened {
                 device, devices, ..
             } => {
-                let device = Arc::clone(device);
+                let double = device.doubles(rendering.settings, &task.packed);
+                let double = double.then(Arc::<Double>::default);
+                let (gpu, for_thread) = (Arc::clone(device), double.clone());
                 let thread = move || {
                     let used = Use {
-                        gpu: &device.gpu,
-                        compiled: Some(&device.compiled),
+                        gpu: &gpu.gpu,
+                        compiled: Some(&gpu.compiled),
                         moving: false,
                         canvas: None,
+                        double: for_thread.as_deref(),
                         dispatch_seconds: DISPATCH_SECONDS,
                         stop: &|| false,
                     };
@@ -176,7 +186,10 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     rendering.bag.fail(Error::Threads(error.to_string()));
                     return Gone::Done;
                 }
-                let gone = self.serve(here, orders, &heights, news);
+                if let Some(double) = &double {
+                    self.make_double(device, devices, Arc::clone(double));
+                }
+                let gone = self.serve(here, orders, &heights, news, double.as_deref());
                 if matches!(gone, Gone::Fault(GpuError::Silent { .. })) {
                     devices.abandon();
                 }
@@ -188,6 +201,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     compiled: live.compiled,
                     moving: live.compiled.is_some(),
                     canvas: live.canvas,
+                    double: None,
                     dispatch_seconds: live.dispatch_seconds,
                     stop: live.stop,
                 };
@@ -201,9 +215,23 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     rendering.bag.fail(Error::Threads(error.to_string()));
                     return Gone::Done;
                 }
-                self.serve(here, orders, &heights, news)
+                self.serve(here, orders, &heights, news, None)
             }),
         }
+    }
+
+    /// Has the stage in f64 made, while the device is at work without it.
+    fn make_double(&self, device: &Arc<Device>, devices: &Devices, double: Arc<Double>) {
+        let packed = self.rendering.packed_in_f64();
+        let device = Arc::clone(device);
+        let features = device.features(self.rendering.settings, &self.rendering.packed());
+        let make = move || {
+            if let Err(error) = double.make(&device.gpu, &packed, features) {
+                log::info!("{} makes no pixels in f64: {error}", device.gpu.name);
+            }
+        };
+        // Without it the CPU decides what it would have decided.
+        let _ = devices.spawn("f64", make);
     }
 
     /// Orders rows, and finishes what comes. The device's thread ends when nobody can order any more.
@@ -213,11 +241,13 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
         orders: Sender<Range<u32>>,
         heights: &Heights,
         news: &Receiver<News>,
+        double: Option<&Double>,
     ) -> Gone {
         let bag = &self.rendering.bag;
         let stop = self.rendering.stop;
         let mut finish = Finish::new(&self.rendering.decider, self.rendering.settings);
         let mut out = 0;
+        let mut checked = 0;
         loop {
             while self.ready.is_some() && out < AT_ONCE {
                 let [wish, most] =
@@ -249,6 +279,8 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 Ok(News::Rendered(rendered)) => {
                     out -= 1;
                     self.beside.kernel += rendered.kernel;
+                    self.beside.kernel_f64 += rendered.double;
+                    self.listed += rendered.listed;
                     let rows = rendered.band.rows.clone();
                     if !bag.wants(&rows) {
                         continue;
@@ -261,7 +293,11 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                         })
                     };
                     match finished {
-                        Ok(finished) => bag.deliver(finished),
+                        Ok(finished) => {
+                            checked += finished.spot_checks;
+                            bag.deliver(finished);
+                            self.weigh(double, checked);
+                        }
                         Err(Unfinished::Halt(Halt::Stopped)) if stop() => bag.fail(Error::Stopped),
                         // Another worker brought the band meanwhile.
                         Err(Unfinished::Halt(Halt::Stopped)) => {}
@@ -292,6 +328,19 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     return Gone::Fault(here.gpu().lost(&"its thread ended"));
                 }
             }
+        }
+    }
+
+    /// Leaves pixels to the CPU where that decides them in less time: there are GPUs on which f64 takes 64 times what
+    /// f32 takes. What the CPU would take is what it takes for a pixel that it checks.
+    fn weigh(&self, double: Option<&Double>, checked: u64) {
+        let a_pixel = |seconds: f64, pixels: u64| seconds / pixels.max(1) as f64;
+        let device = a_pixel(self.beside.kernel_f64, self.listed);
+        let cpu = a_pixel(self.beside.spot_checks, checked);
+        if let Some(double) = double
+            && self.listed >= WEIGHED
+        {
+            double.judge(device <= cpu);
         }
     }
 

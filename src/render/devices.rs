@@ -5,7 +5,7 @@
 
 use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
 
 use crate::certify::trust;
@@ -25,14 +25,39 @@ use crate::stopwatch::{Phase, Phases, Stopwatch};
 pub(super) struct Device {
     pub(super) gpu: Arc<Gpu>,
     pub(super) compiled: Compiled,
+    /// Whether it is trusted with f64; asked where it is trusted with certified pixels.
+    doubles: OnceLock<bool>,
 }
+
+/// Scenes of more objects have no stage in f64: preparing them in pairs of f64 takes longer than it spares, since
+/// little of them is in doubt.
+const MOST_DOUBLED: usize = 4096;
 
 impl Device {
     fn new(gpu: Arc<Gpu>) -> Arc<Self> {
         Arc::new(Self {
             gpu,
             compiled: Compiled::default(),
+            doubles: OnceLock::new(),
         })
+    }
+
+    /// Whether it decides in f64 what f32 leaves open of such a picture.
+    pub(super) fn doubles(&self, settings: &Settings, packed: &Packed) -> bool {
+        settings.has_gpu_bounds()
+            && packed.objects.len() <= MOST_DOUBLED
+            && self.doubles.get().is_some_and(|doubles| *doubles)
+    }
+
+    /// What the shader of such a picture needs here.
+    pub(super) fn features(&self, settings: &Settings, packed: &Packed) -> FeatureSet {
+        let features = FeatureSet::new(packed, settings, self.gpu.lanes);
+        let features = features.for_a_file(self.gpu.software);
+        if self.doubles(settings, packed) {
+            features.with_a_list()
+        } else {
+            features
+        }
     }
 }
 
@@ -125,8 +150,7 @@ impl Devices {
         for device in open {
             let gpu = &device.gpu;
             if software || !gpu.software {
-                let features = FeatureSet::new(packed, settings, gpu.lanes);
-                let features = features.for_a_file(gpu.software);
+                let features = device.features(settings, packed);
                 // If this fails, so will compiling it when it is wanted, and that is told.
                 let _ = device
                     .compiled
@@ -203,7 +227,12 @@ fn find(open: &Mutex<Vec<Arc<Device>>>, given: bool, wanted: &Wanted) -> Found {
     watch.lap(Phase::Device);
     let tested = opened.into_iter().map(|device| match device {
         Ok(device) if wanted.certified => {
-            trust::check(&device.gpu, wanted.cache.as_deref()).map(|()| device)
+            let cache = wanted.cache.as_deref();
+            trust::check(&device.gpu, cache).map(|()| {
+                let doubles = || trust::has_doubles(&device.gpu, cache);
+                device.doubles.get_or_init(doubles);
+                device
+            })
         }
         device => device,
     });

@@ -12,6 +12,9 @@ use crate::certify::{DecidedBy, Tally};
 use crate::frame::{Band, Halt, StopRequested};
 use crate::gpu::bands::{Partials, Rendered};
 
+/// Of so many pixels that a device decided in f64 one is computed again.
+const DOUBLED_A_CHECK: usize = 64;
+
 /// Takes bands from a device, one after the other.
 pub(super) struct Finish<'a, 's> {
     decider: &'a PixelDecider<'s>,
@@ -73,18 +76,19 @@ impl<'a, 's> Finish<'a, 's> {
     pub(super) fn band(
         &mut self,
         me: usize,
-        rendered: Rendered,
+        mut rendered: Rendered,
         beside: &mut Beside,
         unwanted: &StopRequested<'_>,
     ) -> Result<Finished, Unfinished> {
         let start = Instant::now();
-        let (mut band, tally, alone) = self.refine(rendered, unwanted)?;
+        let doubled = std::mem::take(&mut rendered.doubled);
+        let (mut band, tally, alone) = self.refine(rendered, &doubled, unwanted)?;
         beside.refine += start.elapsed().as_secs_f64();
         if !self.certified {
             return Ok(Finished::new(me, band, tally));
         }
         let start = Instant::now();
-        let checked = self.check(&mut band, &alone, unwanted)?;
+        let checked = self.check(&mut band, &alone, &doubled, unwanted)?;
         beside.spot_checks += start.elapsed().as_secs_f64();
         Ok(Finished::new(me, band, tally).checked(checked))
     }
@@ -93,6 +97,7 @@ impl<'a, 's> Finish<'a, 's> {
     fn refine(
         &self,
         rendered: Rendered,
+        doubled: &[u32],
         unwanted: &StopRequested<'_>,
     ) -> Result<(Band, Tally, Vec<u32>), Halt> {
         let Rendered {
@@ -108,6 +113,12 @@ impl<'a, 's> Finish<'a, 's> {
         if self.verdicts {
             band.verdicts = Some(vec![DecidedBy::Gpu; pixels]);
         }
+        if let Some(verdicts) = &mut band.verdicts {
+            for place in doubled {
+                verdicts[*place as usize] = DecidedBy::Double;
+            }
+        }
+        tally.add(DecidedBy::Double, doubled.len() as u64);
         let mut alone = Vec::new();
         for (place, decided) in doubtful.iter().zip(decided) {
             *three(&mut band, *place) = decided.bytes;
@@ -121,7 +132,8 @@ impl<'a, 's> Finish<'a, 's> {
                 alone.push(*place);
             }
         }
-        tally.add(DecidedBy::Gpu, (pixels - doubtful.len()) as u64);
+        let others = doubtful.len() + doubled.len();
+        tally.add(DecidedBy::Gpu, (pixels - others) as u64);
         Ok((band, tally, alone))
     }
 
@@ -131,11 +143,16 @@ impl<'a, 's> Finish<'a, 's> {
         &self,
         band: &mut Band,
         alone: &[u32],
+        doubled: &[u32],
         unwanted: &StopRequested<'_>,
     ) -> Result<u64, Unfinished> {
         let top = band.rows.end - 1;
         let width = (band.rgb.len() / 3 / band.rows.len()) as u32;
-        let places = spots(width, &band.rows, &band.rgb, alone);
+        let mut places = spots(width, &band.rows, &band.rgb, alone);
+        // Of what f64 decided more is looked at: it is little, and hard.
+        places.extend(doubled.iter().step_by(DOUBLED_A_CHECK));
+        places.sort_unstable();
+        places.dedup();
         let (decided, _) = self
             .decider
             .pixels(top, &places, &Partials::default(), unwanted)?;

@@ -12,6 +12,7 @@ use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
 use crate::jitter::Jitter;
 use crate::scene::Scene;
+use crate::shader::format::Double;
 use crate::shader::pack::Packed;
 
 /// So many pixels are tried a thread, or as many as this time allows, before it is said how long a picture will take.
@@ -150,6 +151,12 @@ impl<'a> Rendering<'a> {
     fn pack(&self, settings: &Settings) -> Arc<Packed> {
         let prepared = self.decider.exact_tracer().bounded();
         Arc::new(Packed::prepared(prepared, self.scene, settings))
+    }
+
+    /// The scene rounded to f64, for devices that have it.
+    pub(super) fn packed_in_f64(&self) -> Packed<Double> {
+        let exact_tracer = self.decider.exact_tracer();
+        Packed::rounded(exact_tracer.pairs(), self.scene, self.settings)
     }
 
     /// What the CPU does as many pixels at once as its vectors hold, if it does.

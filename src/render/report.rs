@@ -210,7 +210,8 @@ impl Report {
         let on_devices = devices().fold(Tally::default(), |tally, worker| {
             tally.merge(worker.activity.tally.clone())
         });
-        let refined = on_devices.pixels() - on_devices.count(DecidedBy::Gpu);
+        let by_devices = [DecidedBy::Gpu, DecidedBy::Double].map(|by| on_devices.count(by));
+        let refined = on_devices.pixels() - by_devices.iter().sum::<u64>();
         let refined_samples = on_devices.samples();
         let pixels = tally.pixels();
         let percent = |part: u64, whole: u64| 100.0 * part as f64 / whole.max(1) as f64;
@@ -278,6 +279,8 @@ pub struct Seconds {
 pub struct Beside {
     /// The GPU's kernels: by its own clock where it has one, else as waited for.
     pub kernel: f64,
+    /// What of that went into pixels in f64, by the GPU's own clock.
+    pub kernel_f64: f64,
     /// Deciding what the GPU left undecided, while it renders the next bands.
     pub refine: f64,
     /// Computing again some of what it was sure of, likewise.
@@ -288,6 +291,7 @@ impl Beside {
     fn and(self, other: Self) -> Self {
         Self {
             kernel: self.kernel + other.kernel,
+            kernel_f64: self.kernel_f64 + other.kernel_f64,
             refine: self.refine + other.refine,
             spot_checks: self.spot_checks + other.spot_checks,
         }

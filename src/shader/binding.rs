@@ -2,17 +2,16 @@
 //! upload, `plumb dump --stage buffers`, the check of the numbers' range and the tests read it.
 
 use std::borrow::Cow;
-use std::fmt::{Debug, Write as _};
-
-use bytemuck::{Pod, Zeroable as _};
+use std::fmt::Write as _;
 
 use super::feature::{Feature, Features};
+use super::format::{Format, Single};
 use super::pack::{Lit, Packed};
 use super::record::Record;
-use super::records::{LitObject, Object};
+use super::records::wide::{LitObject, Object};
 
-/// A binding of group 0.
-pub struct Binding {
+/// A binding of group 0, of a shader for numbers of a format.
+pub struct Binding<F: Format = Single> {
     /// Its number. Of those with the same number at most one holds.
     pub number: u32,
     /// Its name in WGSL.
@@ -28,7 +27,7 @@ pub struct Binding {
     /// Whether the shader has it.
     pub holds: fn(&Features) -> bool,
     /// What the scene puts into it; None where a dispatch does.
-    pub contents: Option<fn(&Packed) -> Contents<'_>>,
+    pub contents: Option<fn(&Packed<F>) -> Contents<'_>>,
 }
 
 /// The number of the dispatch's binding.
@@ -44,7 +43,7 @@ pub type Contents<'a> = Box<dyn Elements + 'a>;
 /// The elements of a buffer.
 pub trait Elements {
     /// How they are uploaded.
-    fn bytes(&self) -> &[u8];
+    fn bytes(&self) -> Cow<'_, [u8]>;
 
     /// Whether all their numbers are of moderate size, as error bounds ask.
     fn fit(&self) -> bool;
@@ -54,23 +53,23 @@ pub trait Elements {
 }
 
 /// Elements of one type.
-struct List<'a, T: Clone>(Cow<'a, [T]>, fn(&T) -> bool);
+struct List<'a, T: Clone>(Cow<'a, [T]>);
 
-impl<T: Pod + Debug> Elements for List<'_, T> {
-    fn bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(&self.0)
+impl<T: Record> Elements for List<'_, T> {
+    fn bytes(&self) -> Cow<'_, [u8]> {
+        T::bytes(&self.0)
     }
 
     fn fit(&self) -> bool {
-        self.0.iter().all(self.1)
+        self.0.iter().all(T::fits)
     }
 
     fn describe(&self, name: &str, text: &mut String) {
         if self.0.is_empty() {
             return;
         }
-        let (records, size) = (self.0.len(), size_of::<T>());
-        let bytes = records * size;
+        let (records, bytes) = (self.0.len(), self.bytes().len());
+        let size = bytes / records;
         writeln!(
             text,
             "{name}: {records} records of {size} bytes, {bytes} in all"
@@ -83,39 +82,41 @@ impl<T: Pod + Debug> Elements for List<'_, T> {
 }
 
 fn records<'a, T: Record>(records: impl Into<Cow<'a, [T]>>) -> Contents<'a> {
-    Box::new(List(records.into(), T::fits))
+    Box::new(List(records.into()))
 }
 
 fn words<'a>(words: impl Into<Cow<'a, [u32]>>) -> Contents<'a> {
-    Box::new(List(words.into(), |_| true))
+    Box::new(List(words.into()))
 }
 
 /// Records that only lit scenes have.
-fn of_lit<T: Record>(packed: &Packed, of: fn(&Lit) -> &Vec<T>) -> Contents<'_> {
+fn of_lit<F: Format, T: Record>(packed: &Packed<F>, of: fn(&Lit<F>) -> &Vec<T>) -> Contents<'_> {
     records(packed.lit.as_ref().map_or(&[][..], |lit| of(lit)))
 }
 
 /// What `objects` holds in a scene without lights; nothing in others. The tables of indices stand behind the objects, in
 /// the field `kind`.
-pub(crate) fn objects(packed: &Packed) -> Vec<Object> {
+pub(crate) fn objects<F: Format>(packed: &Packed<F>) -> Vec<F::Record<Object>> {
     if packed.lit.is_some() {
         return Vec::new();
     }
     let rows = packed.tables.words.iter().map(|&kind| Object {
         kind,
-        ..Object::zeroed()
+        ..Object::default()
     });
-    packed.objects.iter().copied().chain(rows).collect()
+    let objects = packed.objects.iter().copied();
+    objects.chain(rows.map(F::record)).collect()
 }
 
 /// What it holds in a scene with lights; nothing in others. Third sides of triangles stand behind the tables.
-pub(crate) fn lit_objects(packed: &Packed) -> Vec<LitObject> {
+pub(crate) fn lit_objects<F: Format>(packed: &Packed<F>) -> Vec<F::Record<LitObject>> {
     let rows = packed.tables.words.iter().map(|&kind| LitObject {
         kind,
-        ..LitObject::zeroed()
+        ..LitObject::default()
     });
-    let all = |lit: &Lit| -> Vec<LitObject> {
-        let objects = lit.objects.iter().copied().chain(rows);
+    let all = |lit: &Lit<F>| -> Vec<F::Record<LitObject>> {
+        let objects = lit.objects.iter().copied();
+        let objects = objects.chain(rows.map(F::record));
         objects.chain(lit.third_sides()).collect()
     };
     packed.lit.as_ref().map(all).unwrap_or_default()
@@ -129,17 +130,22 @@ macro_rules! bindings {
         $(#[doc = $doc:literal])*
         binding $number:expr, $name:literal, $access:expr, $wgsl:literal, $what:literal, $holds:expr, $contents:expr;
     )+) => {
-        /// All bindings.
-        pub const BINDINGS: &[Binding] = &[$(Binding {
-            number: $number,
-            name: $name,
-            access: $access,
-            wgsl: $wgsl,
-            doc: &[$($doc),*],
-            what: $what,
-            holds: $holds,
-            contents: $contents,
-        }),+];
+        impl<F: Format> Binding<F> {
+            /// All bindings.
+            pub const ALL: &'static [Self] = &[$(Self {
+                number: $number,
+                name: $name,
+                access: $access,
+                wgsl: $wgsl,
+                doc: &[$($doc),*],
+                what: $what,
+                holds: $holds,
+                contents: $contents,
+            }),+];
+        }
+
+        /// All bindings of a shader for f32.
+        pub const BINDINGS: &[Binding] = Binding::ALL;
     };
 }
 
@@ -162,17 +168,17 @@ bindings! {
     /// other, from the lowest byte up. Behind all rows a word for each group: a bit for each pixel, from the lowest up,
     /// that is set where the CPU has to decide.
     binding PIXELS, "pixels", WRITE, "array<u32>", "pixels",
-        |f| f.contains(&Feature::Packed) && !f.contains(&Feature::Partial), None;
+        |f| f.contains(&Feature::Packed) && !f.contains(&Feature::Records), None;
     /// The words are rows of groups of 16 pixels, filled up: of each group twelve with red, green, blue of one pixel
     /// after the other, from the lowest byte up. Behind all rows a word for each group: a bit for each pixel, from the
     /// lowest up, that is set where the CPU has to decide.
     binding PIXELS, "pixels", WRITE, "Pixels", "pixels",
-        |f| f.contains(&Feature::Packed) && f.contains(&Feature::Partial), None;
+        |f| f.contains(&Feature::Packed) && f.contains(&Feature::Records), None;
     /// The words hold red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to
     /// decide.
-    binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Partial) && !others(f), None;
+    binding PIXELS, "pixels", WRITE, "Pixels", "pixels", |f| f.contains(&Feature::Records) && !others(f), None;
     /// Red, green, blue from the lowest byte up, and in the highest UNDECIDED where the CPU has to decide, else 0.
-    binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Partial) && !others(f), None;
+    binding PIXELS, "pixels", WRITE, "array<u32>", "pixels", |f| !f.contains(&Feature::Records) && !others(f), None;
     /// One for each object of the scene, in file order; after them, if there are any, come the tables that
     /// `index_table` reads.
     binding 2, "objects", READ, "array<Object>", "objects", |f| f.contains(&Feature::AmbientOnly), Some(|p| records(objects(p)));

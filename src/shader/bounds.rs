@@ -1,6 +1,7 @@
 //! Error bounds for f32 on the GPU: the model of its arithmetic, the constants named in `shaders/`, and the literal
 //! bounds that the host derives for forms over the pixel. Each constant is derived in docs/NUMERICS.md under its name.
 
+use super::format::{Format, Known};
 use crate::prepare::plane::Step;
 use crate::real::Bounded;
 use crate::real::rational::ratio;
@@ -317,47 +318,47 @@ pub fn round_up(value: f64) -> f32 {
     }
 }
 
-/// A form's coefficients in f32, and the bound of its error.
-pub type Form<const N: usize> = ([f32; N], f32);
+/// A form's coefficients, before they are rounded to the format, and the bound of its error.
+pub type Form<const N: usize> = ([f64; N], f64);
 
 /// A linear form over (X, Y, 1), where |X| and |Y| are at most `reach`.
-pub fn linear(form: [Bounded; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
+pub fn linear<F: Format>(form: [F::Number; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
     let most = [reach[0], reach[1], 1.0];
     let moved = [screen.offset_error(), screen.offset_error(), 0.0];
     let roundings = screen.either(LINEAR_ROUNDINGS, SAMPLED_LINEAR_ROUNDINGS);
     (
-        form.map(|c| c.value as f32),
-        bound(&form, &most, &moved, roundings),
+        form.map(Known::nearest),
+        bound::<F>(&form, &most, &moved, roundings),
     )
 }
 
 /// A quadratic form over (X², XY, Y², X, Y, 1).
-pub fn quadratic(form: [Bounded; 6], reach: [f64; 2], screen: &Screen) -> Form<6> {
+pub fn quadratic<F: Format>(form: [F::Number; 6], reach: [f64; 2], screen: &Screen) -> Form<6> {
     let [x, y] = reach;
     let most = [x * x, x * y, y * y, x, y, 1.0];
     let slope = screen.offset_error();
     let moved = [2.0 * x, x + y, 2.0 * y, 1.0, 1.0, 0.0].map(|m| m * slope);
     let roundings = screen.either(QUADRATIC_ROUNDINGS, SAMPLED_QUADRATIC_ROUNDINGS);
     (
-        form.map(|c| c.value as f32),
-        bound(&form, &most, &moved, roundings),
+        form.map(Known::nearest),
+        bound::<F>(&form, &most, &moved, roundings),
     )
 }
 
 /// The bound of a form whose terms are at most `most` for a unit of their coefficients, and `moved` more where the
 /// pixel is off. A rounding takes a share of the term, or all of what is flushed.
-fn bound(form: &[Bounded], most: &[f64], moved: &[f64], roundings: f64) -> f32 {
+fn bound<F: Format>(form: &[F::Number], most: &[f64], moved: &[f64], roundings: f64) -> f64 {
     let terms = form.iter().zip(most).zip(moved);
     let errors = terms.map(|((c, most), moved)| {
-        let size = c.value.abs();
-        most * (roundings * (ROUNDING * size + LEAST_NORMAL) + c.error) + size * moved
+        let size = c.nearest().abs();
+        most * (roundings * (F::ROUNDING * size + LEAST_NORMAL) + c.off()) + size * moved
     });
-    round_up((FLOOR + errors.sum::<f64>()) * GROWTH)
+    F::round_up((FLOOR + errors.sum::<f64>()) * GROWTH)
 }
 
 /// An upper bound of |value|, as an f64.
-pub fn upper_bound(value: Bounded) -> f64 {
-    (value.value.abs() + value.error) * Bounded::GROW
+pub fn upper_bound(value: impl Known) -> f64 {
+    (value.nearest().abs() + value.off()) * Bounded::GROW
 }
 
 /// The border `at` of a half-plane of pixels, x ≥ at or x ≤ at for one coordinate, as a form whose sign no rounding can
@@ -384,19 +385,19 @@ pub fn step(step: &Step, anchor: [i32; 2], screen: &Screen) -> Option<Form<3>> {
     }
     let sign = if step.rising { 1.0 } else { -1.0 };
     let mut form = [0.0; 3];
-    form[axis] = sign as f32;
-    form[2] = (-sign * border) as f32;
-    Some((form, (screen.lattice * STEP_ERROR) as f32))
+    form[axis] = sign;
+    form[2] = -sign * border;
+    Some((form, screen.lattice * STEP_ERROR))
 }
 
 /// Whether a factor is 0, or far enough from it.
-pub fn not_tiny(value: f32) -> bool {
-    value == 0.0 || f64::from(value.abs()) >= SMALLEST
+pub fn not_tiny(value: f64) -> bool {
+    value == 0.0 || value.abs() >= SMALLEST
 }
 
 /// Whether f32 can hold the number with room to spare; 0 is as good as any small number.
-pub fn fits(value: f32) -> bool {
-    f64::from(value.abs()) <= LARGEST
+pub fn fits(value: f64) -> bool {
+    value.abs() <= LARGEST
 }
 
 #[cfg(test)]

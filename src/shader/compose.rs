@@ -9,13 +9,15 @@ use std::fmt::Write as _;
 
 use super::binding;
 use super::constants::constants;
+use super::double::double;
 use super::feature::{Feature, Features};
 use super::feature_set::FeatureSet;
+use super::format::Format;
 use super::kind::SurfaceKind;
 use super::pack::Packed;
 use super::preprocess::{Directives, preprocess};
 use super::record::{Layout, Record as _};
-use super::records::{self, CameraNumbers};
+use super::records::{self, CameraNumbers, wide};
 
 /// What the composed shader's entry point makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +28,8 @@ pub enum Entry {
     Pixel,
     /// What primary rays meet first, and how far away.
     FirstHit,
+    /// Pixels of a list, again.
+    Listed,
 }
 
 impl Entry {
@@ -34,6 +38,7 @@ impl Entry {
             Self::Picture => include_str!("../../shaders/entry/picture.wgsl"),
             Self::Pixel => include_str!("../../shaders/entry/pixel.wgsl"),
             Self::FirstHit => include_str!("../../shaders/entry/first_hit.wgsl"),
+            Self::Listed => include_str!("../../shaders/entry/listed.wgsl"),
         }
     }
 }
@@ -83,13 +88,13 @@ const FILES: [File; 17] = [
 ///
 /// # Panics
 /// If a file of `shaders/` has a directive that means nothing: a test goes through all of them.
-pub fn compose(packed: &Packed, set: &FeatureSet, entry: Entry) -> String {
+pub fn compose<F: Format>(packed: &Packed<F>, set: &FeatureSet, entry: Entry) -> String {
     compose_with(packed, set, &set.features(), entry)
 }
 
 /// The same with just these features.
-pub(crate) fn compose_with(
-    packed: &Packed,
+pub(crate) fn compose_with<F: Format>(
+    packed: &Packed<F>,
     set: &FeatureSet,
     features: &Features,
     entry: Entry,
@@ -108,7 +113,8 @@ pub(crate) fn compose_with(
             text = text.replace(&constant, &format!("dispatch.camera_{}", field.name));
         }
     }
-    constants(packed, set, features) + &text
+    let text = constants(packed, set, features) + &text;
+    if F::DOUBLE { double(&text) } else { text }
 }
 
 fn resolve(
@@ -129,7 +135,12 @@ fn resolve(
 }
 
 /// The text for `//#insert what`.
-fn insertion(what: &str, packed: &Packed, set: &FeatureSet, features: &Features) -> Option<String> {
+fn insertion<F: Format>(
+    what: &str,
+    packed: &Packed<F>,
+    set: &FeatureSet,
+    features: &Features,
+) -> Option<String> {
     Some(match what.split(' ').collect::<Vec<_>>()[..] {
         ["struct", name] => layout(name)?.definition(),
         ["members", name] => layout(name)?.member_lines(""),
@@ -165,7 +176,7 @@ fn layout(name: &str) -> Option<&'static Layout> {
 
 /// The objects of a small scene as literals, for primary rays: no load, no loop. Polygons come first: of objects that
 /// share a surface a plane without end is the last that counts.
-fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
+fn unrolled<F: Format>(packed: &Packed<F>, features: &FeatureSet) -> String {
     let mut text = String::new();
     if !features.unrolled {
         return text;
@@ -178,24 +189,34 @@ fn unrolled(packed: &Packed, features: &FeatureSet) -> String {
         .unwrap_or_default();
     };
     for (i, r) in packed.polygons.iter().enumerate() {
-        line("polygon_hits", r.literal(), r.object, i, r.group);
+        let polygon: wide::Polygon = F::wide(r);
+        line(
+            "polygon_hits",
+            r.literal(),
+            polygon.object,
+            i,
+            polygon.group,
+        );
     }
     for (i, p) in packed.planes.iter().enumerate() {
-        line("plane_hits", p.literal(), p.object, i, p.group);
+        let plane: wide::Plane = F::wide(p);
+        line("plane_hits", p.literal(), plane.object, i, plane.group);
     }
     for (i, q) in packed.quadrics.iter().enumerate() {
-        line("quadric_hits", q.literal(), q.object, i, 0);
+        let quadric: wide::Quadric = F::wide(q);
+        line("quadric_hits", q.literal(), quadric.object, i, 0);
     }
     for (i, s) in packed.spheres.iter().enumerate() {
-        line("sphere_hits", s.literal(), s.object, i, 0);
+        let sphere: wide::Sphere = F::wide(s);
+        line("sphere_hits", s.literal(), sphere.object, i, 0);
     }
     text
 }
 
 /// The objects of a small scene as literals, for rays from anywhere: a statement for each call of its hits function,
 /// with the object and its group.
-fn unrolled_world(
-    packed: &Packed,
+fn unrolled_world<F: Format>(
+    packed: &Packed<F>,
     features: &FeatureSet,
     statement: impl Fn(&str, u32, u32) -> String,
 ) -> String {
@@ -208,15 +229,18 @@ fn unrolled_world(
     };
     for p in &lit.planes {
         let call = format!("plane_hits_from({}, ray, range)", p.literal());
-        line(call, p.object, p.group);
+        let plane: wide::WorldPlane = F::wide(p);
+        line(call, plane.object, plane.group);
     }
     for q in &packed.quadrics {
         let call = format!("quadric_hits_from({}, ray, range)", q.literal());
-        line(call, q.object, q.group);
+        let quadric: wide::Quadric = F::wide(q);
+        line(call, quadric.object, quadric.group);
     }
     for s in &lit.spheres {
         let call = format!("sphere_hits_from({}, ray, range)", s.literal());
-        line(call, s.object, s.group);
+        let sphere: wide::WorldSphere = F::wide(s);
+        line(call, sphere.object, sphere.group);
     }
     text
 }
@@ -234,7 +258,8 @@ mod tests {
         let packed = Packed::new(&scene, &Settings::default());
         let set = FeatureSet::new(&packed, &Settings::default(), 1);
         let features = set.features();
-        let entries = [Entry::Picture, Entry::Pixel, Entry::FirstHit].map(Entry::file);
+        let entries =
+            [Entry::Picture, Entry::Pixel, Entry::FirstHit, Entry::Listed].map(Entry::file);
         let mut directives = 0;
         for file in FILES.iter().map(|(file, _)| *file).chain(entries) {
             let insert = |what: &str| insertion(what, &packed, &set, &features);

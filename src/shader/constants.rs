@@ -4,13 +4,16 @@ use super::bounds;
 use super::feature::{Feature, Features};
 use super::feature_set::{FeatureSet, PARTIAL_HEAD};
 use super::form;
+use super::format::Format;
 use super::kind::SurfaceKind;
-use super::literal::literal;
 use super::pack::Packed;
 use super::record::Record as _;
 
 /// Side of the square workgroup: 16×16 or 256×1 were a fifth faster than 8×8 on lavapipe.
 pub const WORKGROUP: u32 = 16;
+
+/// Pixels of a list that a workgroup takes.
+pub const LIST_GROUP: u32 = 64;
 
 /// lavapipe ends every loop, without a word, once the loops of an invocation have gone round 65,535 times together; and
 /// counts for all invocations that are lanes of one vector, as long as any of them goes round.
@@ -28,7 +31,11 @@ const STACK: usize = 8;
 pub const FINE: f32 = 0.125;
 
 /// The numbers that the text refers to by name.
-pub(super) fn constants(packed: &Packed, set: &FeatureSet, features: &Features) -> String {
+pub(super) fn constants<F: Format>(
+    packed: &Packed<F>,
+    set: &FeatureSet,
+    features: &Features,
+) -> String {
     let mut lines = vec![format!("const WORKGROUP = {WORKGROUP};")];
     if features.contains(&Feature::AnyObject) {
         if !features.contains(&Feature::Moving) {
@@ -38,20 +45,20 @@ pub(super) fn constants(packed: &Packed, set: &FeatureSet, features: &Features) 
     }
     lines.extend(counts(packed, set, features));
     if let (Some(lit), true) = (set.lit, features.contains(&Feature::Branches)) {
-        lines.push(format!("const MAX_PATH = {};", literal(lit.max_path)));
+        lines.push(format!("const MAX_PATH = {};", F::literal(lit.max_path)));
         lines.push(format!("const MAX_RAYS = {}u;", lit.max_rays));
     }
     for kind in set.kinds.iter().filter(|kind| **kind != SurfaceKind::Plain) {
         lines.push(format!("const {} = {}u;", kind.name(), kind.code()));
     }
     if features.contains(&Feature::Partial) {
-        lines.push(format!("const FINE = {};", literal(FINE)));
+        lines.push(format!("const FINE = {};", F::literal(FINE.into())));
     }
     lines.join("\n") + "\n"
 }
 
 /// The camera, where it does not move.
-fn camera(packed: &Packed, features: &Features) -> Vec<String> {
+fn camera<F: Format>(packed: &Packed<F>, features: &Features) -> Vec<String> {
     let numbers = packed.camera.numbers.literals().into_iter();
     numbers
         // Lengths in world units matter to lights only.
@@ -61,7 +68,7 @@ fn camera(packed: &Packed, features: &Features) -> Vec<String> {
 }
 
 /// How many there are of what, and how many rounds their loops take.
-fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String> {
+fn counts<F: Format>(packed: &Packed<F>, set: &FeatureSet, features: &Features) -> Vec<String> {
     let has = |feature: Feature| features.contains(&feature);
     let mut counts = vec![
         (Feature::PlaneLoop, "PLANES", packed.planes.len()),
@@ -109,7 +116,12 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
     counts.extend([
         (Feature::Packed, "PACKED_GROUP", form::GROUP as usize),
         (Feature::Packed, "PACKED_WORDS", form::GROUP_WORDS as usize),
-        (Feature::Partial, "PARTIAL_WORDS", words as usize),
+        (
+            Feature::Records,
+            "RECORD_WORDS",
+            set.record_words() as usize,
+        ),
+        (Feature::Listed, "LIST_GROUP", LIST_GROUP as usize),
         (
             Feature::Partial,
             "SUMMED_WORDS",
@@ -152,25 +164,28 @@ fn counts(packed: &Packed, set: &FeatureSet, features: &Features) -> Vec<String>
 }
 
 /// What the error bounds in the shader refer to by name.
-fn error_constants(packed: &Packed, features: &Features) -> Vec<String> {
+fn error_constants<F: Format>(packed: &Packed<F>, features: &Features) -> Vec<String> {
     let line =
-        |name: &str, value: f64| format!("const {name} = {};", literal(bounds::round_up(value)));
+        |name: &str, value: f64| format!("const {name} = {};", F::literal(F::round_up(value)));
     if !features.contains(&Feature::Certified) {
         // Fast pictures keep away from 0 too where they take a root.
         return vec![line("TINY_SQUARE", bounds::TINY_SQUARE)];
     }
     let camera = &packed.camera;
-    let for_spread = |roundings: f64| roundings * f64::from(camera.condition) * bounds::U;
+    let for_spread = |roundings: f64| roundings * f64::from(camera.condition) * F::U;
     let [length, dir] = bounds::direction_roundings(features.contains(&Feature::Samples));
     let named = bounds::NAMED.iter();
-    let named = named.map(|constant| line(constant.name, constant.value));
+    let named = named.map(|constant| match constant.name {
+        "U" => line("U", F::U),
+        name => line(name, constant.value),
+    });
     let mut lines: Vec<String> = named.collect();
     lines.extend([
         line("W_ERROR", f64::from(camera.w_error)),
         line("LENGTH_ERROR", for_spread(length)),
         line("DIR_ERROR", for_spread(dir)),
         line("VALUE_ERROR", for_spread(bounds::VALUE_ROUNDINGS)),
-        format!("const DARK = {};", literal(packed.dark)),
+        line("DARK", packed.dark.into()),
         line("BRIGHT", packed.brightest()),
     ]);
     if features.contains(&Feature::Lit) {

@@ -75,6 +75,8 @@ features! {
     Certified = "certified",
     /// The camera stands in a buffer.
     Moving = "moving",
+    /// Numbers are f64.
+    Double = "double",
     /// Sums are protected from being simplified away.
     Barrier = "barrier",
     /// Some objects share a surface, and which of them is hit is certified.
@@ -115,6 +117,10 @@ features! {
     Samples = "samples",
     /// Pixels with sure and doubtful samples leave a record.
     Partial = "partial",
+    /// Pixels in doubt leave a record for f64.
+    Listed = "listed",
+    /// Pixels of some kind leave records.
+    Records = "records",
     /// Samples are spread as the course's program did.
     Course = "course",
     /// Iterations of loops are counted.

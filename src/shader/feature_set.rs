@@ -57,6 +57,10 @@ pub struct FeatureSet {
     pub course: bool,
     /// Invocations that share a driver's limit on loops; 1 where there is none.
     pub lanes: u32,
+    /// Pixels in doubt are listed, for a shader with f64, where that can be.
+    pub listed: bool,
+    /// Numbers are f64: the shader takes its pixels from such a list.
+    pub double: bool,
     /// There are lights.
     pub lit: Option<LitFeatures>,
 }
@@ -91,7 +95,7 @@ pub struct LitFeatures {
     /// Some of them are outside the tree.
     pub loose_spheres: bool,
     /// Longest path, in units of 2^scale.
-    pub max_path: f32,
+    pub max_path: f64,
     /// Most rays of a sample.
     pub max_rays: u32,
 }
@@ -106,6 +110,9 @@ pub const MOST_PARTIAL: u32 = 1024;
 
 /// Words of such a record before the bits of its samples: place, three sums, three errors.
 pub const PARTIAL_HEAD: u32 = 7;
+
+/// Words of a record of a pixel in doubt: place, and what becomes of it.
+pub const LISTED_WORDS: u32 = 2;
 
 /// Pixels that an invocation makes where it makes several.
 pub const QUAD: u32 = 4;
@@ -159,6 +166,8 @@ impl FeatureSet {
             samples: settings.samples,
             course: several.is_some_and(|several| several.spread == SamplePattern::Course),
             lanes,
+            listed: false,
+            double: false,
             lit: packed.lit.as_ref().map(|lit| LitFeatures {
                 mirror: lit.mirror,
                 transparent: lit.transparent,
@@ -178,7 +187,7 @@ impl FeatureSet {
                 triangles: !lit.third_sides.is_empty(),
                 spheres: !lit.spheres.is_empty(),
                 loose_spheres: lit.in_tree < lit.spheres.len(),
-                max_path: (settings.limits.max_path * two_to(-packed.scale)) as f32,
+                max_path: settings.limits.max_path * two_to(-packed.scale),
                 max_rays: settings.limits.max_rays,
             }),
         }
@@ -203,6 +212,43 @@ impl FeatureSet {
         Self {
             packed: self.quad || !software,
             ..self
+        }
+    }
+
+    /// The same that lists the pixels that it leaves in doubt, for a shader with f64.
+    #[must_use]
+    pub fn with_a_list(self) -> Self {
+        Self {
+            listed: true,
+            ..self
+        }
+    }
+
+    /// The shader with f64 that takes its pixels from the list of such a one.
+    #[must_use]
+    pub fn for_the_list(self) -> Self {
+        Self {
+            double: true,
+            ..self
+        }
+    }
+
+    /// Whether pixels in doubt are listed. Where four pixels go into a vector of words there is no list.
+    pub fn is_listed(&self) -> bool {
+        self.listed
+            && self.certified
+            && self.any_object()
+            && self.samples == 1
+            && !self.values
+            && (self.packed || !self.quad)
+    }
+
+    /// Words of a record of a pixel, of either kind; 0 where there are none.
+    pub fn record_words(&self) -> u32 {
+        if self.is_listed() {
+            LISTED_WORDS
+        } else {
+            self.partial_words()
         }
     }
 

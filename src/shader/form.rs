@@ -1,6 +1,6 @@
 //! What a picture's shader leaves of a rectangle of pixels: the one place that says how its buffer is laid out.
 //!
-//! First comes the counter of records, if there are records. Then come the pixels, in rows from the top, in one of
+//! First come the counters of records, if there are records. Then come the pixels, in rows from the top, in one of
 //! three forms; rows are filled up to whole *groups*.
 //!
 //! - **Packed**, for a file: 16 pixels are a group, of twelve words with red, green, blue of one pixel after the other,
@@ -10,7 +10,8 @@
 //!   and in the highest not 0 where the CPU has to decide. A group is as many pixels as an invocation makes.
 //! - **Values**: red, green, blue as f32 (255 is a full byte), then such a word.
 //!
-//! Records of pixels of which some samples are sure come last (`gpu/bands/partial.rs`).
+//! Records of pixels in doubt come last: of those of which some samples are sure (`gpu/bands/partial.rs`), or of all, for
+//! f64 (`gpu/bands/listed.rs`).
 
 use super::feature::{Feature, Features};
 use super::feature_set::{FeatureSet, QUAD};
@@ -40,8 +41,10 @@ pub struct Form {
     pub across: u32,
     /// Samples whose offsets the shader reads, for each pixel; 0 where it does not.
     pub offsets: u32,
-    /// Words of a record of a pixel with sure and doubtful samples; 0 where there are none.
-    pub partial_words: u32,
+    /// Words of a record of a pixel that is in doubt; 0 where there are none.
+    pub record_words: u32,
+    /// Whether the records are a list of pixels for f64; else they are of pixels with sure and doubtful samples.
+    pub listed: bool,
 }
 
 impl Form {
@@ -58,7 +61,8 @@ impl Form {
             pixels,
             across: if has(Feature::Quad) { QUAD } else { 1 },
             offsets: if has(Feature::Course) { set.samples } else { 0 },
-            partial_words: set.partial_words(),
+            record_words: set.record_words(),
+            listed: set.is_listed(),
         }
     }
 
@@ -97,7 +101,8 @@ mod tests {
             pixels,
             across,
             offsets: 0,
-            partial_words: 0,
+            record_words: 0,
+            listed: false,
         };
         assert_eq!(GROUP, WORKGROUP, "a row of a workgroup is a group");
         assert_eq!(

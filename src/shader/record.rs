@@ -1,123 +1,20 @@
-//! What a record of the GPU is: one list of fields from which its Rust struct, its WGSL struct, its literal, the check
+//! What a record of the GPU is: one list of fields from which its Rust structs, its WGSL struct, its literal, the check
 //! of its numbers' range and its layout follow. The lists stand in [`records`](super::records).
+//!
+//! A record is filled in with f64, as its *wide* twin, and rounded to f32 as a whole where it is for f32
+//! ([`format`](super::format)).
 
+use std::borrow::Cow;
 use std::fmt::Debug;
 
-use bytemuck::{Pod, Zeroable};
+pub use super::field::{Field, Narrow, Pad1, Pad2, Pad3};
+pub(super) use super::field::{align, largest};
 
-use super::bounds::{fits, not_tiny};
-use super::literal::{literal, vector};
-
-/// A type that a field of a record may have.
-pub trait Field {
-    /// Its name in WGSL; empty for [`Pad1`] and the like, which WGSL leaves out by itself.
-    const WGSL: &'static str;
-
-    /// The value as a WGSL expression that means exactly it.
-    fn literal(&self) -> String;
-
-    /// Whether every f32 in it is of moderate size: see [`fits`].
-    fn fits(&self) -> bool;
-
-    /// Whether every f32 in it is 0 or not tiny: see [`not_tiny`].
-    fn not_tiny(&self) -> bool {
-        true
-    }
-}
-
-macro_rules! pads {
-    ($($name:ident, $words:literal;)+) => {$(
-        /// Words that WGSL's alignment leaves unused between or behind the fields.
-        #[repr(transparent)]
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
-        pub struct $name([u32; $words]);
-
-        impl Field for $name {
-            const WGSL: &'static str = "";
-
-            fn literal(&self) -> String {
-                String::new()
-            }
-
-            fn fits(&self) -> bool {
-                true
-            }
-        }
-    )+};
-}
-
-pads! {
-    Pad1, 1;
-    Pad2, 2;
-    Pad3, 3;
-}
-
-impl Field for f32 {
-    const WGSL: &'static str = "f32";
-
-    fn literal(&self) -> String {
-        literal(*self)
-    }
-
-    fn fits(&self) -> bool {
-        fits(*self)
-    }
-
-    fn not_tiny(&self) -> bool {
-        not_tiny(*self)
-    }
-}
-
-impl Field for u32 {
-    const WGSL: &'static str = "u32";
-
-    fn literal(&self) -> String {
-        format!("{self}u")
-    }
-
-    fn fits(&self) -> bool {
-        true
-    }
-}
-
-macro_rules! vector_fields {
-    ($($scalar:ty, $count:literal, $wgsl:literal, $literal:expr;)+) => {$(
-        impl Field for [$scalar; $count] {
-            const WGSL: &'static str = $wgsl;
-
-            fn literal(&self) -> String {
-                $literal(self)
-            }
-
-            fn fits(&self) -> bool {
-                self.iter().all(Field::fits)
-            }
-
-            fn not_tiny(&self) -> bool {
-                self.iter().all(Field::not_tiny)
-            }
-        }
-    )+};
-}
-
-vector_fields! {
-    f32, 2, "vec2f", vector;
-    f32, 3, "vec3f", vector;
-    f32, 4, "vec4f", vector;
-    u32, 2, "vec2u", |v: &[u32; 2]| format!("vec2u({}, {})", v[0], v[1]);
-    i32, 2, "vec2i", |v: &[i32; 2]| format!("vec2i({}, {})", v[0], v[1]);
-}
-
-impl Field for i32 {
-    const WGSL: &'static str = "i32";
-
-    fn literal(&self) -> String {
-        format!("{self}i")
-    }
-
-    fn fits(&self) -> bool {
-        true
-    }
+/// Records one after the other, as WGSL has them in an array.
+pub(super) fn written<T: Record + Field>(records: &[T]) -> Cow<'_, [u8]> {
+    let mut bytes = Vec::new();
+    records.iter().for_each(|record| record.write(&mut bytes));
+    bytes.into()
 }
 
 /// A field as WGSL and the test of the layout need it.
@@ -152,6 +49,8 @@ pub struct Layout {
     pub size: usize,
     /// [`Record::fits`] of the record that stands in these bytes.
     pub fits: fn(&[u8]) -> bool,
+    /// The bytes of that record with f64 for f32, as WGSL has them.
+    pub widened: fn(&[u8]) -> Vec<u8>,
 }
 
 impl Layout {
@@ -182,9 +81,12 @@ impl Layout {
 }
 
 /// A record of the GPU.
-pub trait Record: Pod + Debug {
-    /// Its fields and how they are laid out.
-    const LAYOUT: Layout;
+pub trait Record: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// Its name in WGSL.
+    const WGSL: &'static str;
+
+    /// How records are uploaded.
+    fn bytes(records: &[Self]) -> Cow<'_, [u8]>;
 
     /// Its fields' names and values in WGSL.
     fn literals(&self) -> Vec<(&'static str, String)>;
@@ -196,11 +98,40 @@ pub trait Record: Pod + Debug {
             .into_iter()
             .map(|(_, value)| value)
             .collect();
-        format!("{}({})", Self::LAYOUT.wgsl, values.join(", "))
+        format!("{}({})", Self::WGSL, values.join(", "))
     }
 
     /// Whether every number in it is of moderate size, but for those fields that say why they need not be.
     fn fits(&self) -> bool;
+}
+
+/// Words are elements of buffers as records are.
+impl Record for u32 {
+    const WGSL: &'static str = "u32";
+
+    fn bytes(records: &[Self]) -> Cow<'_, [u8]> {
+        bytemuck::cast_slice(records).into()
+    }
+
+    fn literals(&self) -> Vec<(&'static str, String)> {
+        vec![("", Field::literal(self))]
+    }
+
+    fn fits(&self) -> bool {
+        true
+    }
+}
+
+/// A record with f64 in it.
+pub trait Wide: Record {
+    /// The same with f32.
+    type Narrow: Record;
+
+    /// Every number rounded to the nearest f32.
+    fn narrow(self) -> Self::Narrow;
+
+    /// Every number as an f64.
+    fn widen(narrow: Self::Narrow) -> Self;
 }
 
 /// Makes records of lists of fields: `NAME as "WGSL name" { … }`. A field whose numbers may be of any size says why in
@@ -231,8 +162,9 @@ macro_rules! records {
                 )+
             }
 
-            impl $crate::shader::record::Record for $name {
-                const LAYOUT: $crate::shader::record::Layout = $crate::shader::record::Layout {
+            impl $name {
+                /// Its fields and how they are laid out.
+                pub const LAYOUT: $crate::shader::record::Layout = $crate::shader::record::Layout {
                     name: stringify!($name),
                     wgsl: $wgsl,
                     doc: &[$($doc),+],
@@ -245,36 +177,128 @@ macro_rules! records {
                         doc: &[$($field_doc),*],
                     }),+],
                     size: size_of::<$name>(),
+                    widened: |bytes| {
+                        let record: Self = ::bytemuck::pod_read_unaligned(bytes);
+                        $crate::shader::record::written(&[$crate::shader::record::Narrow::widen(record)]).into_owned()
+                    },
                     fits: |bytes| $crate::shader::record::Record::fits(&::bytemuck::pod_read_unaligned::<Self>(bytes)),
                 };
+            }
 
-                fn literals(&self) -> Vec<(&'static str, String)> {
-                    use $crate::shader::record::Field;
-                    let values = [$((stringify!($field), Field::literal(&self.$field))),+];
-                    values.into_iter().filter(|(_, value)| !value.is_empty()).collect()
+            records!(@record $name, $wgsl, |records| ::bytemuck::cast_slice(records).into(), $(
+                $field, $type, [$($why)?], [$($factor)?]
+            ),+);
+            records!(@record wide::$name, $wgsl, $crate::shader::record::written, $(
+                $field, <$type as $crate::shader::record::Narrow>::Wide, [$($why)?], [$($factor)?]
+            ),+);
+
+            impl $crate::shader::record::Narrow for $name {
+                type Wide = wide::$name;
+
+                fn widen(self) -> wide::$name {
+                    use $crate::shader::record::Narrow;
+                    wide::$name { $($field: Narrow::widen(self.$field)),+ }
                 }
 
-                fn fits(&self) -> bool {
-                    [$(records!(@fits self.$field, [$($why)?], [$($factor)?])),+].into_iter().all(|fits| fits)
+                fn narrow(wide: wide::$name) -> Self {
+                    use $crate::shader::record::Narrow;
+                    Self { $($field: Narrow::narrow(wide.$field)),+ }
                 }
             }
 
-            impl $crate::shader::record::Field for $name {
-                const WGSL: &'static str = $wgsl;
+            impl $crate::shader::record::Wide for wide::$name {
+                type Narrow = $name;
 
-                fn literal(&self) -> String {
-                    $crate::shader::record::Record::literal(self)
+                #[inline]
+                fn narrow(self) -> $name {
+                    $crate::shader::record::Narrow::narrow(self)
                 }
 
-                fn fits(&self) -> bool {
-                    $crate::shader::record::Record::fits(self)
+                #[inline]
+                fn widen(narrow: $name) -> Self {
+                    $crate::shader::record::Narrow::widen(narrow)
                 }
             }
         )+
 
+        /// The same records with f64 for f32.
+        pub(in crate::shader) mod wide {
+            #[allow(unused_imports)]
+            use super::*;
+
+            $(
+                $(#[doc = $doc])+
+                #[derive(Debug, Clone, Copy, PartialEq, Default)]
+                pub struct $name {
+                    $(
+                        $(#[doc = $field_doc])*
+                        pub $field: <$type as $crate::shader::record::Narrow>::Wide,
+                    )+
+                }
+
+                // A record within a record is named without saying that it is a wide one.
+                impl $crate::shader::record::Narrow for $name {
+                    type Wide = Self;
+
+                    fn widen(self) -> Self {
+                        self
+                    }
+
+                    fn narrow(wide: Self) -> Self {
+                        wide
+                    }
+                }
+            )+
+        }
+
         /// The layouts of these records.
-        pub(super) const LAYOUTS: &[$crate::shader::record::Layout] =
-            &[$(<$name as $crate::shader::record::Record>::LAYOUT),+];
+        pub(super) const LAYOUTS: &[$crate::shader::record::Layout] = &[$($name::LAYOUT),+];
+    };
+    (@record $name:path, $wgsl:literal, $bytes:expr,
+        $($field:ident, $type:ty, [$($why:literal)?], [$($factor:literal)?]),+) => {
+        impl $crate::shader::record::Record for $name {
+            const WGSL: &'static str = $wgsl;
+
+            fn bytes(records: &[Self]) -> ::std::borrow::Cow<'_, [u8]> {
+                let bytes: fn(&[Self]) -> ::std::borrow::Cow<'_, [u8]> = $bytes;
+                bytes(records)
+            }
+
+            fn literals(&self) -> Vec<(&'static str, String)> {
+                use $crate::shader::record::Field;
+                let values = [$((stringify!($field), Field::literal(&self.$field))),+];
+                values.into_iter().filter(|(_, value)| !value.is_empty()).collect()
+            }
+
+            fn fits(&self) -> bool {
+                [$(records!(@fits self.$field, [$($why)?], [$($factor)?])),+].into_iter().all(|fits| fits)
+            }
+        }
+
+        impl $crate::shader::record::Field for $name {
+            const WGSL: &'static str = $wgsl;
+
+            fn literal(&self) -> String {
+                $crate::shader::record::Record::literal(self)
+            }
+
+            fn fits(&self) -> bool {
+                $crate::shader::record::Record::fits(self)
+            }
+
+            const ALIGN: usize = $crate::shader::record::largest(&[
+                $(<$type as $crate::shader::record::Field>::ALIGN),+
+            ]);
+
+            fn write(&self, bytes: &mut Vec<u8>) {
+                use $crate::shader::record::{Field, align};
+                $(
+                    align(bytes, <$type as Field>::ALIGN);
+                    self.$field.write(bytes);
+                )+
+                align(bytes, <Self as Field>::ALIGN);
+            }
+        }
     };
     (@why) => { None };
     (@why $why:literal) => { Some($why) };

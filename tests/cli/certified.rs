@@ -25,6 +25,7 @@ fn the_report_says_what_decided_every_pixel() {
         let stages: Vec<&str> = decided.keys().map(String::as_str).collect();
         let mut expected = [
             "gpu",
+            "gpu_f64",
             "f32",
             "f64",
             "pairs",
@@ -39,7 +40,7 @@ fn the_report_says_what_decided_every_pixel() {
         assert_eq!(report["ties"], report["decided"]["tie"]);
         assert_eq!(report["presumed"], report["decided"]["presumed"]);
         let seconds = &report["seconds"];
-        for time in ["kernel", "refine", "spot_checks"] {
+        for time in ["kernel", "kernel_f64", "refine", "spot_checks"] {
             assert!(seconds["beside"][time].is_f64(), "{time}");
         }
         assert!(seconds["stages"]["tie"].is_f64());

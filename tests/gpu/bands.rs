@@ -233,6 +233,7 @@ fn stored(scene: &Scene, settings: &Settings, for_a_file: bool) -> Vec<(Vec<u8>,
         band_rows: Some(17),
         // So short that rectangles are cut by columns.
         dispatch_seconds: 1e-4,
+        double: None,
         canvas: None,
     };
     let mut stored = Vec::new();

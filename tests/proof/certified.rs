@@ -10,6 +10,7 @@ use plumb::render::{Backend, SamplePattern, Settings};
 use plumb::scene::Scene;
 
 use crate::common;
+use crate::doubles::with_doubles;
 use crate::oracle::{self, Answer, Failure, Fault, Rules, differences, picture, pixels_of};
 
 /// Scenes that need more rays than a sample may have, unless paths are as short as this.
@@ -57,6 +58,11 @@ fn complaints(scene: &Scene, answer: &Answer, settings: &Settings) -> Vec<String
     let (rgb, report) = common::picture(scene, settings);
     oracle::rendered_as_asked(&report, settings.backend);
     let mut found: Vec<String> = differences(scene, answer, &rgb).collect();
+    if settings.backend == Backend::Gpu
+        && let Some(rgb) = with_doubles(scene, settings, &rgb)
+    {
+        found.extend(differences(scene, answer, &rgb));
+    }
     let undecided = answer.pixels.iter().filter(|pixel| pixel.is_err()).count();
     if undecided > 0 {
         found.push(format!("{undecided} pixels are not decided by the oracle"));

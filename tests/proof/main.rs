@@ -10,6 +10,7 @@
 mod certified;
 #[path = "../common/mod.rs"]
 mod common;
+mod doubles;
 mod extremes;
 mod oracle;
 mod oracle_numbers;

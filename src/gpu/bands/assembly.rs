@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
+use super::listed;
 use super::partial::{Layout, Partials};
 use super::plan::Rectangle;
+use super::slot::Took;
 use crate::frame::{Band, spare};
 use crate::shader::form::{GROUP, GROUP_WORDS, Pixels};
 
@@ -16,8 +18,14 @@ pub struct Rendered {
     pub doubtful: Vec<u32>,
     /// What it has of those of them that have sure samples too.
     pub partials: Partials,
+    /// The places of the pixels that were doubtful in f32 and are sure in f64, in rising order.
+    pub doubled: Vec<u32>,
     /// Seconds that its kernels took.
     pub kernel: f64,
+    /// Seconds of those that went into f64.
+    pub double: f64,
+    /// How many pixels f64 was asked for.
+    pub listed: u64,
 }
 
 /// The band under way, put together from its rectangles.
@@ -26,6 +34,8 @@ pub(super) struct Assembly {
     width: usize,
     pixels: Pixels,
     under_way: Option<Rendered>,
+    /// What f64 made of pixels of it.
+    found: Vec<(u32, [u8; 3])>,
     complete: bool,
 }
 
@@ -45,6 +55,7 @@ impl Assembly {
             width: width as usize,
             pixels,
             under_way: None,
+            found: Vec::new(),
             complete: false,
         }
     }
@@ -72,10 +83,15 @@ impl Assembly {
             },
             doubtful: Vec::new(),
             partials: Partials::default(),
+            doubled: Vec::new(),
             kernel: 0.0,
+            double: 0.0,
+            listed: 0,
         });
         let list = [counter, records];
-        partials.take(rectangle, self.width as u32, layout.words, list);
+        if !layout.listed {
+            partials.take(rectangle, self.width as u32, layout.words, list);
+        }
         let mut target = Target {
             width: self.width,
             columns: rectangle.columns.start as usize..rectangle.columns.end as usize,
@@ -88,13 +104,17 @@ impl Assembly {
             Pixels::Words => target.take_words::<4>(rows, bytes),
             Pixels::Values => target.take_words::<16>(rows, bytes),
         }
+        let found = listed::decided(rectangle, self.width as u32, layout, list);
+        self.found.extend(found);
         self.complete = rectangle.last;
     }
 
-    /// The kernel of a rectangle that was taken ran for so many seconds.
-    pub(super) fn took(&mut self, seconds: f64) {
+    /// What the kernels of a rectangle that was taken took.
+    pub(super) fn took(&mut self, took: &Took) {
         if let Some(rendered) = &mut self.under_way {
-            rendered.kernel += seconds;
+            rendered.kernel += took.kernel;
+            rendered.double += took.double;
+            rendered.listed += u64::from(took.listed);
         }
     }
 
@@ -106,6 +126,8 @@ impl Assembly {
         let mut rendered = self.under_way.take()?;
         // Rectangles side by side bring their rows one after the other.
         rendered.doubtful.sort_unstable();
+        let found = std::mem::take(&mut self.found);
+        rendered.doubled = listed::settle(found, &mut rendered.band.rgb, &mut rendered.doubtful);
         rendered.partials.finish();
         Some(rendered)
     }

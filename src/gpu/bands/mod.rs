@@ -3,6 +3,7 @@
 
 pub(crate) mod assembly;
 pub(super) mod buffers;
+mod listed;
 pub(crate) mod partial;
 mod plan;
 mod slot;
@@ -12,6 +13,7 @@ use std::ops::{ControlFlow, Range};
 use super::GpuError;
 use super::canvas::Canvas;
 use super::device::Gpu;
+use super::double::Double;
 use super::pipeline::Pipeline;
 use crate::frame::StopRequested;
 use crate::jitter::Jitter;
@@ -52,6 +54,8 @@ pub struct Frame<'a> {
     pub band_rows: Option<u32>,
     /// About how many seconds a dispatch is to take.
     pub dispatch_seconds: f64,
+    /// What decides in f64 what f32 leaves open, if the pipeline lists it.
+    pub double: Option<&'a Double>,
     /// Where the pixels are shown, on the GPU.
     pub canvas: Option<&'a Canvas>,
 }
@@ -125,9 +129,9 @@ pub fn run(
             // The older of the two slots is read back, while the GPU goes on with the other one's work.
             let oldest = if open == 2 { turn } else { 1 - turn };
             if let Some(slot) = &mut slots[oldest] {
-                let (pixels, seconds) = slot.collect(gpu, &mut assembly, watch)?;
-                plan.took(pixels, seconds);
-                assembly.took(seconds);
+                let took = slot.collect(gpu, &mut assembly, watch)?;
+                plan.took(took.pixels, took.kernel);
+                assembly.took(&took);
             }
             open -= 1;
             finished = assembly.finished();
@@ -191,7 +195,7 @@ fn largest_dispatch(gpu: &Gpu, form: &Form, width: u32, rows: &Range<u32>) -> (u
     let bytes = limits
         .max_storage_buffer_binding_size
         .min(limits.max_buffer_size)
-        - if form.partial_words > 0 {
+        - if form.record_words > 0 {
             partial::MOST
         } else {
             0

@@ -8,8 +8,8 @@ use crate::frame::Part;
 use crate::shader::feature_set::PARTIAL_HEAD;
 use crate::shader::form::Form;
 
-/// Bytes of the counter of records, before the pixels.
-const COUNTER: u64 = 4;
+/// Bytes of the counters of records and of workgroups for them, before the pixels.
+const COUNTER: u64 = 8;
 /// Most bytes of the records of one dispatch: as many as its packed pixels have at most.
 const MAX_BYTES: u64 = 8 << 20;
 /// Most bytes that the list adds to the pixels.
@@ -27,6 +27,8 @@ pub(super) struct Layout {
     pub(super) pixels: u64,
     /// Words of a record.
     pub(super) words: u32,
+    /// Whether the records are a list for f64.
+    pub(super) listed: bool,
     /// Records that there is room for.
     pub(super) room: u32,
     /// Bytes of all.
@@ -36,16 +38,18 @@ pub(super) struct Layout {
 impl Layout {
     /// Of a dispatch of so many pixels, with those that rows are filled up with.
     pub(super) fn new(form: &Form, pixels: u64) -> Self {
-        let words = form.partial_words;
+        let words = form.record_words;
         let (counter, room) = match words {
             0 => (0, 0),
-            words => (COUNTER, room(pixels, words)),
+            _ if form.listed => (COUNTER, room(pixels, LISTED_SHARE, words)),
+            words => (COUNTER, room(pixels, PARTIAL_SHARE, words)),
         };
         let record = 4 * u64::from(words);
         Self {
             counter,
             pixels: form.bytes(pixels),
             words,
+            listed: form.listed,
             room,
             bytes: counter + form.bytes(pixels) + u64::from(room) * record,
         }
@@ -59,11 +63,16 @@ impl Layout {
     }
 }
 
-/// How many records a dispatch of so many pixels has room for, of so many words each: half of the pixels may be
-/// doubtful. (Of our scenes at 16 samples up to an eighth are, but they stand close together.)
-fn room(pixels: u64, words: u32) -> u32 {
+/// Of so many pixels one may be doubtful, where there are several samples. (Of our scenes at 16 samples up to an eighth
+/// are, but they stand close together.)
+const PARTIAL_SHARE: u64 = 2;
+/// The same with a sample each: of ordinary scenes a fiftieth is.
+const LISTED_SHARE: u64 = 8;
+
+/// How many records a dispatch of so many pixels has room for, of so many words each, one in `share`.
+fn room(pixels: u64, share: u64, words: u32) -> u32 {
     let most = MAX_BYTES / (4 * u64::from(words.max(1)));
-    let room = (pixels / 2).max(LEAST).min(pixels).min(most) as u32;
+    let room = (pixels / share).max(LEAST).min(pixels).min(most) as u32;
     #[cfg(test)]
     let room = tests::allowed(room);
     room
@@ -106,7 +115,7 @@ impl Partials {
             let words = bytes.as_chunks().0.iter();
             words.map(|word| u32::from_le_bytes(*word)).collect()
         };
-        let [count] = words(counter)[..] else {
+        let [count, _] = words(counter)[..] else {
             return;
         };
         self.stride = stride as usize;
@@ -188,21 +197,22 @@ pub(crate) mod tests {
     }
 
     /// Of a shader that makes a pixel an invocation.
-    pub(in crate::gpu::bands) fn form(pixels: Pixels, partial_words: u32) -> Form {
+    pub(in crate::gpu::bands) fn form(pixels: Pixels, record_words: u32) -> Form {
         Form {
             pixels,
             across: 1,
             offsets: 0,
-            partial_words,
+            record_words,
+            listed: false,
         }
     }
 
     #[test]
     fn half_of_the_pixels_have_room_and_the_list_is_bounded() {
-        assert_eq!(room(1, 8), 1);
-        assert_eq!(room(300, 8), 256);
-        assert_eq!(room(4000, 8), 2000);
-        assert_eq!(u64::from(room(2 << 20, 8)) * 32, MAX_BYTES);
+        assert_eq!(room(1, 2, 8), 1);
+        assert_eq!(room(300, 2, 8), 256);
+        assert_eq!(room(4000, 2, 8), 2000);
+        assert_eq!(u64::from(room(2 << 20, 2, 8)) * 32, MAX_BYTES);
         for words in [8, 39] {
             for pixels in [Pixels::Packed, Pixels::Words] {
                 let layout = Layout::new(&form(pixels, words), 2 << 20);
@@ -232,7 +242,7 @@ pub(crate) mod tests {
             &rectangle,
             5,
             9,
-            [&bytes(&[2]), &bytes(left.as_flattened())],
+            [&bytes(&[2, 1]), &bytes(left.as_flattened())],
         );
         rectangle.columns = 3..5;
         let right = [record(3, 3.5, [3, 4]), record(4, 4.5, [3, 4])];
@@ -240,7 +250,7 @@ pub(crate) mod tests {
             &rectangle,
             5,
             9,
-            [&bytes(&[7]), &bytes(right.as_flattened())],
+            [&bytes(&[7, 1]), &bytes(right.as_flattened())],
         );
         partials.finish();
         let places: Vec<u32> = partials.places.iter().map(|(place, _)| *place).collect();

@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use super::super::GpuError;
 use super::super::device::Gpu;
+use super::super::double::Double;
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::buffers::{BufferPool, PixelBuffers};
+use super::listed;
 use super::partial;
 use super::plan::Rectangle;
 use super::{Frame, OFFSET_BYTES};
@@ -25,8 +27,56 @@ pub(super) struct Slot {
     /// Where they go in the end.
     pool: Arc<BufferPool>,
     bind_group: wgpu::BindGroup,
+    /// For the pixels that were listed, once the shader for them is there.
+    second: Option<Second>,
     clock: Option<Clock>,
-    pending: Option<(wgpu::SubmissionIndex, Rectangle, partial::Layout)>,
+    pending: Option<Pending>,
+}
+
+/// A dispatch under way.
+#[derive(Debug)]
+struct Pending {
+    index: wgpu::SubmissionIndex,
+    rectangle: Rectangle,
+    layout: partial::Layout,
+    /// Whether the list is taken in f64.
+    doubled: bool,
+}
+
+/// What a dispatch took.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Took {
+    /// How many pixels it made.
+    pub(super) pixels: u64,
+    /// Seconds that its kernels took: by the device's clock where it has one, else as waited for.
+    pub(super) kernel: f64,
+    /// Seconds of those that went into f64, by the device's clock; 0 where it has none.
+    pub(super) double: f64,
+    /// How many pixels f64 was asked for.
+    pub(super) listed: u32,
+}
+
+/// What takes the pixels of a list.
+#[derive(Debug)]
+struct Second {
+    group: wgpu::BindGroup,
+    /// Workgroups of its dispatch.
+    workgroups: wgpu::Buffer,
+}
+
+impl Second {
+    fn new(gpu: &Gpu, pipeline: &Pipeline, dispatch: &wgpu::Buffer, pixels: &wgpu::Buffer) -> Self {
+        use wgpu::util::DeviceExt as _;
+        let descriptor = wgpu::util::BufferInitDescriptor {
+            label: Some("workgroups"),
+            contents: bytemuck::cast_slice(&[0_u32, 1, 1]),
+            usage: wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_DST,
+        };
+        Self {
+            group: pipeline.bind(gpu, dispatch, pixels, None),
+            workgroups: gpu.device.create_buffer_init(&descriptor),
+        }
+    }
 }
 
 /// Timestamps before and after a dispatch.
@@ -66,16 +116,16 @@ impl Slot {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("clock"),
                 ty: wgpu::QueryType::Timestamp,
-                count: 2,
+                count: 3,
             }),
             resolved: buffer(
                 "clock",
-                16,
+                24,
                 wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
             ),
             staging: buffer(
                 "clock staging",
-                16,
+                24,
                 wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             ),
         });
@@ -95,6 +145,7 @@ impl Slot {
             is_clean: true,
             pool: Arc::clone(&gpu.buffers),
             bind_group,
+            second: None,
             clock,
             pending: None,
         }
@@ -111,7 +162,11 @@ impl Slot {
         let rows = rectangle.band.end - rectangle.band.start;
         let form = &pipeline.form;
         let pitch = columns.next_multiple_of(form.group());
-        let layout = partial::Layout::new(form, u64::from(pitch) * u64::from(rows));
+        let mut layout = partial::Layout::new(form, u64::from(pitch) * u64::from(rows));
+        let double = frame.double.and_then(Double::pipeline);
+        if let Some((_, most)) = double {
+            layout.room = layout.room.min(most);
+        }
         let dispatch = Dispatch {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
@@ -130,26 +185,41 @@ impl Slot {
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let timestamp_writes = self
-            .clock
-            .as_ref()
-            .map(|clock| wgpu::ComputePassTimestampWrites {
+        if let (Some((double, _)), None) = (double, &self.second) {
+            let second = Second::new(gpu, double, &self.dispatch, &self.buffers.pixels);
+            self.second = Some(second);
+        }
+        let timestamps = |beginning, end| {
+            let clock = self.clock.as_ref()?;
+            Some(wgpu::ComputePassTimestampWrites {
                 query_set: &clock.queries,
-                beginning_of_pass_write_index: Some(0),
-                end_of_pass_write_index: Some(1),
-            });
+                beginning_of_pass_write_index: beginning,
+                end_of_pass_write_index: end,
+            })
+        };
         if layout.counter > 0 {
             encoder.clear_buffer(&self.buffers.pixels, 0, Some(layout.counter));
         }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("plumb"),
-                timestamp_writes,
+                timestamp_writes: timestamps(Some(0), Some(1)),
             });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &self.bind_group, &[]);
             let groups = [pitch / form.across, rows].map(|n| n.div_ceil(WORKGROUP));
             pass.dispatch_workgroups(groups[0], groups[1], 1);
+        }
+        if let (Some((double, _)), Some(second)) = (double, &self.second) {
+            // The second of the counters says how many workgroups the list asks for.
+            encoder.copy_buffer_to_buffer(&self.buffers.pixels, 4, &second.workgroups, 0, 4);
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("plumb, f64"),
+                timestamp_writes: timestamps(None, Some(2)),
+            });
+            pass.set_pipeline(&double.pipeline);
+            pass.set_bind_group(0, &second.group, &[]);
+            pass.dispatch_workgroups_indirect(&second.workgroups, 0);
         }
         let bytes = layout.bytes;
         let PixelBuffers { pixels, staging } = &self.buffers;
@@ -162,45 +232,64 @@ impl Slot {
             canvas.take(&mut encoder, (pixels, layout.counter), pitch, at, size);
         }
         if let Some(clock) = &self.clock {
-            encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
-            encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 16);
+            // What was not written is not resolved.
+            let written = if double.is_some() { 3 } else { 2 };
+            encoder.resolve_query_set(&clock.queries, 0..written, &clock.resolved, 0);
+            encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.staging, 0, 24);
         }
         let index = gpu.submit(encoder);
         staging.map_async(wgpu::MapMode::Read, ..bytes, |_| ());
         if let Some(clock) = &self.clock {
             clock.staging.map_async(wgpu::MapMode::Read, .., |_| ());
         }
-        self.pending = Some((index, rectangle, layout));
+        self.pending = Some(Pending {
+            index,
+            rectangle,
+            layout,
+            doubled: double.is_some(),
+        });
         self.is_clean = false;
     }
 
-    /// Waits for the dispatch and takes its pixels; returns how many there were, and the seconds that the kernel took:
-    /// by the device's clock where it has one, else as waited for.
+    /// Waits for the dispatch and takes its pixels.
     pub(super) fn collect(
         &mut self,
         gpu: &Gpu,
         assembly: &mut Assembly,
         watch: &mut Stopwatch,
-    ) -> Result<(u64, f64), GpuError> {
-        let Some((index, rectangle, layout)) = self.pending.take() else {
-            return Ok((0, 0.0));
+    ) -> Result<Took, GpuError> {
+        let Some(pending) = self.pending.take() else {
+            return Ok(Took::default());
         };
+        let Pending {
+            index,
+            rectangle,
+            layout,
+            doubled,
+        } = pending;
         gpu.wait(index)?;
         let waited = watch.lap(Phase::Wait);
-        let kernel = match &self.clock {
+        let [kernel, double] = match &self.clock {
             Some(clock) => {
                 let view = clock
                     .staging
                     .get_mapped_range(..)
                     .map_err(|error| gpu.lost(&error))?;
-                let ticks: [u64; 2] = [word(&view, 0), word(&view, 1)];
+                let [start, single, double] = [0, 1, 2].map(|i| word(&view, i));
                 drop(view);
                 clock.staging.unmap();
-                ticks[1].saturating_sub(ticks[0]) as f64
-                    * f64::from(gpu.queue.get_timestamp_period())
-                    * 1e-9
+                let seconds = |from: u64, to: u64| {
+                    to.saturating_sub(from) as f64
+                        * f64::from(gpu.queue.get_timestamp_period())
+                        * 1e-9
+                };
+                if doubled {
+                    [seconds(start, double), seconds(single, double)]
+                } else {
+                    [seconds(start, single), 0.0]
+                }
             }
-            None => waited,
+            None => [waited, 0.0],
         };
         let pixels = rectangle.pixels();
         let view = self
@@ -209,10 +298,20 @@ impl Slot {
             .get_mapped_range(..layout.bytes)
             .map_err(|error| gpu.lost(&error))?;
         assembly.take(&rectangle, &layout, &view);
+        let listed = if doubled {
+            listed::count(&layout, &view)
+        } else {
+            0
+        };
         drop(view);
         self.buffers.staging.unmap();
         self.is_clean = true;
-        Ok((pixels, kernel))
+        Ok(Took {
+            pixels,
+            kernel,
+            double,
+            listed,
+        })
     }
 }
 

@@ -12,6 +12,7 @@ use crate::shader::literal::literal;
 
 mod checks;
 mod composed;
+mod double;
 mod exact;
 mod operands;
 
@@ -52,6 +53,11 @@ pub fn run(gpu: &Gpu) -> Result<Vec<Outcome>, GpuError> {
     Ok(outcomes)
 }
 
+/// The same with f64, of a device that has it: for the stage behind f32.
+pub fn run_double(gpu: &Gpu) -> Result<Vec<Outcome>, GpuError> {
+    double::run(gpu)
+}
+
 /// The checks that failed, in a line; none if all passed.
 pub fn failures(outcomes: &[Outcome]) -> Option<String> {
     let failed: Vec<String> = outcomes
@@ -78,6 +84,15 @@ pub fn version() -> u64 {
         operands(),
     )
         .hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The same for the self-test with f64.
+pub fn double_version() -> u64 {
+    use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+    let mut hasher = DefaultHasher::new();
+    (double::SHADER, env!("CARGO_PKG_VERSION")).hash(&mut hasher);
+    double::names_and_operands(&mut hasher);
     hasher.finish()
 }
 
@@ -121,19 +136,38 @@ fn judge(pairs: &[[u32; 2]], results: &[u32]) -> Vec<Outcome> {
 
 /// The text of the shader.
 fn wgsl() -> String {
-    let mut text = format!("const RESULTS = {RESULTS}u;\n");
-    for (i, value) in LITERALS.into_iter().enumerate() {
-        text += &format!("const LITERAL_{i} = {};\n", literal(value));
+    with_literals(SHADER, RESULTS, &LITERALS.map(literal))
+}
+
+/// A shader's text, with the number of its results and literals before it.
+fn with_literals(shader: &str, results: usize, literals: &[String]) -> String {
+    let mut text = format!("const RESULTS = {results}u;\n");
+    for (i, literal) in literals.iter().enumerate() {
+        text += &format!("const LITERAL_{i} = {literal};\n");
     }
-    text + SHADER
+    text + shader
 }
 
 /// What the device makes of the pairs: [`RESULTS`] words for each.
 fn compute(gpu: &Gpu, pairs: &[[u32; 2]]) -> Result<Vec<u32>, GpuError> {
+    let size = RESULTS * size_of_val(pairs) / 2;
+    let groups = pairs.len() / WORKGROUP;
+    let words = on_device(gpu, &wgsl(), bytemuck::cast_slice(pairs), groups, size)?;
+    Ok(bytemuck::pod_collect_to_vec(&words))
+}
+
+/// So many bytes that so many workgroups of a shader make of operands.
+fn on_device(
+    gpu: &Gpu,
+    wgsl: &str,
+    operands: &[u8],
+    groups: usize,
+    size: usize,
+) -> Result<Vec<u8>, GpuError> {
     use wgpu::BufferUsages;
     use wgpu::util::DeviceExt as _;
     let device = &gpu.device;
-    let pipeline = gpu.compile(&wgsl(), "main")?;
+    let pipeline = gpu.compile(wgsl, "main")?;
     let filled = |contents: &[u8]| {
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("self-test"),
@@ -141,19 +175,15 @@ fn compute(gpu: &Gpu, pairs: &[[u32; 2]]) -> Result<Vec<u32>, GpuError> {
             usage: BufferUsages::STORAGE,
         })
     };
-    let size = (RESULTS * pairs.len() * size_of::<u32>()) as u64;
-    let operands = filled(bytemuck::cast_slice(pairs));
-    let unknown = filled(&[0; 4]);
+    let (operands, unknown) = (filled(operands), filled(&[0; 4]));
     let results = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("self-test"),
-        size,
+        size: size as u64,
         usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
     let group = gpu.bind(&pipeline, &[(0, &operands), (1, &results), (2, &unknown)]);
-    let groups = [(pairs.len() / WORKGROUP) as u32, 1];
-    let words = gpu.run_once(&pipeline, &group, groups, &results)?;
-    Ok(bytemuck::pod_collect_to_vec(&words))
+    gpu.run_once(&pipeline, &group, [groups as u32, 1], &results)
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@ use super::*;
 thread_local! {
     /// A word of the results that this thread's next self-tests get wrong.
     static SPOILED: Cell<Option<usize>> = const { Cell::new(None) };
+    /// A result of its next self-tests with f64, likewise.
+    static SPOILED_DOUBLE: Cell<Option<usize>> = const { Cell::new(None) };
 }
 
 /// Makes the self-tests that follow on this thread get a word wrong, or none.
@@ -14,10 +16,25 @@ pub(crate) fn spoil_next(word: Option<usize>) {
     SPOILED.set(word);
 }
 
+/// Makes the self-tests with f64 that follow on this thread get a result wrong, or none.
+pub(crate) fn spoil_next_double(result: Option<usize>) {
+    SPOILED_DOUBLE.set(result);
+}
+
 /// Makes another thread get wrong what this one does.
 pub(crate) fn carry() -> Box<dyn FnOnce() + Send> {
-    let spoiled = SPOILED.get();
-    Box::new(move || SPOILED.set(spoiled))
+    let (spoiled, double) = (SPOILED.get(), SPOILED_DOUBLE.get());
+    Box::new(move || {
+        SPOILED.set(spoiled);
+        SPOILED_DOUBLE.set(double);
+    })
+}
+
+/// What [`run_double`] does to the results under test.
+pub(super) fn spoil_double(results: &mut [u64]) {
+    if let Some(result) = SPOILED_DOUBLE.get() {
+        results[result] ^= 1 << 20;
+    }
 }
 
 /// What [`run`] does to the results under test.

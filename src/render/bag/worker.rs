@@ -74,7 +74,7 @@ pub(crate) struct Finished {
     pub(super) worker: usize,
     pub(super) band: Band,
     pub(super) tally: Tally,
-    pub(super) spot_checks: u64,
+    pub(crate) spot_checks: u64,
     /// A hash of its bytes, where the worker may be found to be wrong later.
     pub(super) hash: Option<u64>,
 }

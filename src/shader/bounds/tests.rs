@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::real::Real as _;
+use crate::shader::format::Single;
 
 const SCREEN: Screen = Screen {
     pixels: [1 << 20, 1],
@@ -17,10 +18,11 @@ fn coefficients_that_are_flushed_are_within_the_bound() {
         let tiny = Bounded::exact(exponent.exp2());
         let zero = Bounded::zero();
         let all_of_it = tiny.value * x * x;
-        let (_, error) = quadratic([tiny, zero, zero, zero, zero, zero], [x, 0.0], &SCREEN);
-        assert!(f64::from(error) > all_of_it, "{error:e} {all_of_it:e}");
-        let (_, error) = linear([tiny, zero, zero], [x, 0.0], &SCREEN);
-        assert!(f64::from(error) > tiny.value * x);
+        let (_, error) =
+            quadratic::<Single>([tiny, zero, zero, zero, zero, zero], [x, 0.0], &SCREEN);
+        assert!(error > all_of_it, "{error:e} {all_of_it:e}");
+        let (_, error) = linear::<Single>([tiny, zero, zero], [x, 0.0], &SCREEN);
+        assert!(error > tiny.value * x);
     }
 }
 
@@ -34,17 +36,21 @@ fn what_follows_the_first_order_is_within_the_bound() {
         ..SCREEN
     };
     let bounds = [
-        (LINEAR_ROUNDINGS, linear([one; 3], [1.0; 2], &SCREEN).1, 3.0),
+        (
+            LINEAR_ROUNDINGS,
+            linear::<Single>([one; 3], [1.0; 2], &SCREEN).1,
+            3.0,
+        ),
         (
             SAMPLED_QUADRATIC_ROUNDINGS,
-            quadratic([one; 6], [1.0; 2], &sampled).1,
+            quadratic::<Single>([one; 6], [1.0; 2], &sampled).1,
             6.0,
         ),
     ];
     for (roundings, bound, terms) in bounds {
         // A result r is off from the exact one by ROUNDING·|r| at most: by a factor of 1/(1 − ROUNDING).
         let off = (1.0 - ROUNDING).powf(-roundings) - 1.0;
-        let left = f64::from(bound) * (1.0 - ROUNDING).powf(roundings);
+        let left = bound * (1.0 - ROUNDING).powf(roundings);
         assert!(terms * off < left, "{roundings}");
         assert!(left < 1.001 * terms * off);
     }

@@ -1,29 +1,32 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
-use super::{Packed, f32x3, factor, factors};
+use super::{Packed, factor, factors, nearest};
 use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
-use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, U, round_up, upper_bound};
-use crate::shader::records::{Light, LitObject, Material, Projector, WorldPlane, WorldSphere};
+use crate::real::{Real as _, V3};
+use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, upper_bound};
+use crate::shader::format::{Format, Known, Single};
+use crate::shader::records::wide::{
+    Light, LitObject, Material, Projector, WorldPlane, WorldSphere,
+};
 
 /// The records of a lit scene, and what its materials can do.
 #[derive(Debug, Clone)]
-pub struct Lit {
+pub struct Lit<F: Format = Single> {
     /// One for each object of the scene.
-    pub objects: Vec<LitObject>,
+    pub objects: Vec<F::Record<LitObject>>,
     /// The scene's materials.
-    pub materials: Vec<Material>,
+    pub materials: Vec<F::Record<Material>>,
     /// The scene's lights.
-    pub lights: Vec<Light>,
+    pub lights: Vec<F::Record<Light>>,
     /// The projectors among them that light anything.
-    pub projectors: Vec<Projector>,
+    pub projectors: Vec<F::Record<Projector>>,
     /// Every plane, rectangle and triangle.
-    pub planes: Vec<WorldPlane>,
+    pub planes: Vec<F::Record<WorldPlane>>,
     /// The third sides of the triangles among them: row and origin, as the other sides have them.
-    pub third_sides: Vec<[f32; 4]>,
+    pub third_sides: Vec<[f64; 4]>,
     /// Every sphere; those of the tree come first.
-    pub spheres: Vec<WorldSphere>,
+    pub spheres: Vec<F::Record<WorldSphere>>,
     /// How many of the spheres their tree holds.
     pub in_tree: usize,
     /// How many of the planes are in no tree: the first.
@@ -43,12 +46,12 @@ const SPHERE_BIT: u32 = 1 << 31;
 /// Marks a quadric there.
 const QUADRIC_BIT: u32 = 1 << 30;
 
-impl Lit {
+impl<F: Format> Lit<F> {
     /// With the record of each light that is a projector and lights anything.
     pub(super) fn new(
-        scene: &Prepared<Bounded>,
-        world: &World<Bounded>,
-        packed: &Packed,
+        scene: &Prepared<F::Number>,
+        world: &World<F::Number>,
+        packed: &Packed<F>,
         projectors: &[Option<Projector>],
     ) -> Self {
         let used = || scene.materials.iter().map(|&index| &scene.palette[index]);
@@ -73,22 +76,35 @@ impl Lit {
         Self {
             unnumbered_light_on_surface: on_surfaces.flatten().any(|light| *light >= 32),
             objects: (0..scene.surfaces.len())
-                .map(|object| LitObject {
-                    material: scene.materials[object] as u32,
-                    kind: packed.objects[object].kind,
-                    group: world.groups[object],
-                    place: places[object],
+                .map(|object| {
+                    F::record(LitObject {
+                        material: scene.materials[object] as u32,
+                        kind: F::wide(&packed.objects[object]).kind,
+                        group: world.groups[object],
+                        place: places[object],
+                    })
                 })
                 .collect(),
-            materials: scene.palette.iter().map(material).collect(),
-            lights: lights(world, projectors),
-            projectors: projectors.iter().flatten().copied().collect(),
+            materials: scene
+                .palette
+                .iter()
+                .map(|m| F::record(material::<F>(m)))
+                .collect(),
+            lights: lights::<F>(world, projectors),
+            projectors: projectors
+                .iter()
+                .flatten()
+                .map(|projector| F::record(*projector))
+                .collect(),
             planes: planes
                 .iter()
-                .map(|p| world_plane(world, p, &mut third_sides))
+                .map(|p| F::record(world_plane::<F>(world, p, &mut third_sides)))
                 .collect(),
             third_sides,
-            spheres: spheres.iter().map(|s| world_sphere(world, s)).collect(),
+            spheres: spheres
+                .iter()
+                .map(|s| F::record(world_sphere::<F>(world, s)))
+                .collect(),
             in_tree,
             loose_planes: world.loose_planes(),
             mirror: used().any(|material| material.mirror),
@@ -97,15 +113,31 @@ impl Lit {
         }
     }
 
-    /// The third sides as they stand behind the objects: the bits of their numbers.
-    pub fn third_sides(&self) -> impl Iterator<Item = LitObject> {
-        let sides = self.third_sides.iter().map(|side| side.map(f32::to_bits));
-        sides.map(|[material, kind, group, place]| LitObject {
+    /// The third sides as they stand behind the objects: the bits of their numbers, the lower half of an f64 first.
+    pub fn third_sides(&self) -> impl Iterator<Item = F::Record<LitObject>> {
+        let words = self.third_sides.iter().flat_map(|side| {
+            let bits = side.map(|number| {
+                if F::DOUBLE {
+                    number.to_bits()
+                } else {
+                    (number as f32).to_bits().into()
+                }
+            });
+            let [a, b, c, d] = bits.map(|bits| bits as u32);
+            let [e, f, g, h] = bits.map(|bits| (bits >> 32) as u32);
+            if F::DOUBLE {
+                vec![[a, e, b, f], [c, g, d, h]]
+            } else {
+                vec![[a, b, c, d]]
+            }
+        });
+        let record = |[material, kind, group, place]: [u32; 4]| LitObject {
             material,
             kind,
             group,
             place,
-        })
+        };
+        words.map(move |words| F::record(record(words)))
     }
 
     /// Iterations of the loops over objects outside the tree, for one ray.
@@ -114,7 +146,7 @@ impl Lit {
     }
 }
 
-fn material(material: &prepare::Material<Bounded>) -> Material {
+fn material<F: Format>(material: &prepare::Material<F::Number>) -> Material {
     // Which channels a secondary ray changes is asked by the CPU alone.
     let prepare::Material {
         ambient,
@@ -130,7 +162,7 @@ fn material(material: &prepare::Material<Bounded>) -> Material {
     } = *material;
     Material {
         ambient: factors(ambient),
-        transparency: factor(transparency.value),
+        transparency: factor(transparency.nearest()),
         diffuse: factors(diffuse),
         shininess: if mirror {
             factor(shininess.min(2.0 * MOST_SHININESS))
@@ -140,22 +172,28 @@ fn material(material: &prepare::Material<Bounded>) -> Material {
         specular: factors(specular),
         pad: Default::default(),
         tint: factors(tint),
-        kept: factor((Bounded::exact(1.0) - transparency).value),
+        kept: factor((F::Number::exact(1.0) - transparency).nearest()),
     }
 }
 
 /// The lights, with their places among the projectors.
-fn lights(world: &World<Bounded>, projectors: &[Option<Projector>]) -> Vec<Light> {
+fn lights<F: Format>(
+    world: &World<F::Number>,
+    projectors: &[Option<Projector>],
+) -> Vec<F::Record<Light>> {
     let mut place = 0;
-    let mut numbered = |(record, projector): (&prepare::Light<Bounded>, &Option<Projector>)| {
+    let mut numbered = |(record, projector): (&prepare::Light<F::Number>, &Option<Projector>)| {
         place += u32::from(projector.is_some());
-        light(record, if projector.is_some() { place } else { 0 })
+        F::record(light::<F>(
+            record,
+            if projector.is_some() { place } else { 0 },
+        ))
     };
     let lights = world.lights.iter().zip(projectors);
     lights.map(&mut numbered).collect()
 }
 
-fn light(light: &prepare::Light<Bounded>, place: u32) -> Light {
+fn light<F: Format>(light: &prepare::Light<F::Number>, place: u32) -> Light {
     let prepare::Light {
         location,
         emissivity,
@@ -165,25 +203,25 @@ fn light(light: &prepare::Light<Bounded>, place: u32) -> Light {
         narrow: _,
     } = *light;
     let zero = V3::exact(glam::DVec3::ZERO);
-    let (axis, cosine) = cone.unwrap_or((zero, Bounded::exact(-2.0)));
+    let (axis, cosine) = cone.unwrap_or((zero, F::Number::exact(-2.0)));
     Light {
-        location: f32x3(location),
-        cosine: cosine.value as f32,
+        location: nearest(location),
+        cosine: cosine.nearest(),
         // A projector that lights nothing is as good as a dark light.
         emissivity: if projector.is_some() && place == 0 {
             [0.0; 3]
         } else {
             factors(emissivity)
         },
-        size: size(location),
-        axis: f32x3(axis),
+        size: size::<F>(location),
+        axis: nearest(axis),
         projector: place,
     }
 }
 
 /// The length, or a little more.
-pub(super) fn size(v: V3<Bounded>) -> f32 {
-    round_up(upper_bound(v.dot(v).sqrt()))
+pub(super) fn size<F: Format>(v: V3<F::Number>) -> f64 {
+    F::round_up(upper_bound(v.dot(v).sqrt()))
 }
 
 /// The bits of the first 32 lights in a list. Beyond them f32's own rounding decides: fast rendering only.
@@ -196,28 +234,28 @@ pub(super) fn bits(lights_on_surface: &[usize]) -> u32 {
 }
 
 /// The bit of the light that is next to the plane, and its height, if f32 can have it.
-fn low_light(plane: &prepare::WorldPlane<Bounded>) -> Option<(u32, f32)> {
+fn low_light<F: Format>(plane: &prepare::WorldPlane<F::Number>) -> Option<(u32, f64)> {
     let (light, height) = plane.low_light?;
-    let size = height.value.abs();
-    // The rounding to f32 is u; a light in the plane has no height to be known.
-    let known = size > 1.0 / LARGEST && height.error < 0.25 * U * size;
-    known.then_some((1 << light, height.value as f32))
+    let size = height.nearest().abs();
+    // The rounding to the format is u; a light in the plane has no height to be known.
+    let known = size > 1.0 / LARGEST && height.off() < 0.25 * F::U * size;
+    known.then_some((1 << light, height.nearest()))
 }
 
 /// The end of a plane, as its record has it.
-struct Bounds {
+struct Bounds<F: Format> {
     bounded: u32,
-    rows: [V3<Bounded>; 2],
-    origin: [Bounded; 2],
-    lengths: [Bounded; 2],
+    rows: [V3<F::Number>; 2],
+    origin: [F::Number; 2],
+    lengths: [F::Number; 2],
     /// The largest of the numbers that are subtracted.
     most: f64,
 }
 
 /// The end of a plane; a triangle's third side is put among the others.
-fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<[f32; 4]>) -> Bounds {
-    let (none, zero) = (Bounded::zero(), V3::exact(glam::DVec3::ZERO));
-    let larger_bound = |values: [Bounded; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
+fn bounds<F: Format>(extent: &Extent<F::Number>, third_sides: &mut Vec<[f64; 4]>) -> Bounds<F> {
+    let (none, zero) = (F::Number::zero(), V3::exact(glam::DVec3::ZERO));
+    let larger_bound = |values: [F::Number; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
     match extent {
         Extent::Unbounded => Bounds {
             bounded: 0,
@@ -234,22 +272,22 @@ fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<[f32; 4]>) -> Bounds {
             most: larger_bound(r.origin) + larger_bound(r.dimensions),
         },
         Extent::Triangle(sides) => {
-            let unit = |side: &HalfPlane<Bounded>| {
+            let unit = |side: &HalfPlane<F::Number>| {
                 let length = side.row.dot(side.row).sqrt();
                 (
-                    side.row * (Bounded::exact(1.0) / length),
+                    side.row * (F::Number::exact(1.0) / length),
                     side.origin / length,
                 )
             };
             let [first, second, third] = sides.each_ref().map(unit);
-            let [x, y, z] = f32x3(third.0);
-            third_sides.push([x, y, z, third.1.value as f32]);
+            let [x, y, z] = nearest(third.0);
+            third_sides.push([x, y, z, third.1.nearest()]);
             let origin = upper_bound(third.1);
             Bounds {
                 bounded: 1 + third_sides.len() as u32,
                 rows: [first.0, second.0],
                 origin: [first.1, second.1],
-                lengths: [Bounded::exact(LARGEST); 2],
+                lengths: [F::Number::exact(LARGEST); 2],
                 // No record has the third one, whose range would be looked at.
                 most: if origin <= LARGEST {
                     larger_bound([first.1, second.1]).max(origin)
@@ -261,20 +299,20 @@ fn bounds(extent: &Extent<Bounded>, third_sides: &mut Vec<[f32; 4]>) -> Bounds {
     }
 }
 
-fn world_plane(
-    world: &World<Bounded>,
-    plane: &prepare::WorldPlane<Bounded>,
-    third_sides: &mut Vec<[f32; 4]>,
+fn world_plane<F: Format>(
+    world: &World<F::Number>,
+    plane: &prepare::WorldPlane<F::Number>,
+    third_sides: &mut Vec<[f64; 4]>,
 ) -> WorldPlane {
     let mut axis_mask = [1.0; 3];
     let mut fixed_coordinate = [0.0; 3];
-    let mut highest = world.highest.value as f32;
+    let mut highest = world.highest.nearest();
     if let Some((axis, at)) = plane.fixed_coordinate {
         axis_mask[axis] = 0.0;
-        fixed_coordinate[axis] = at.value as f32;
+        fixed_coordinate[axis] = at.nearest();
         if axis == 2 {
             // The whole plane is below; otherwise no ray could hit it and it would have been dropped.
-            highest = f32::MAX;
+            highest = f32::MAX.into();
         }
     }
     let Bounds {
@@ -283,38 +321,41 @@ fn world_plane(
         origin,
         lengths,
         most,
-    } = bounds(&plane.extent, third_sides);
-    let (low_light, height) = low_light(plane).unwrap_or((0, 0.0));
+    } = bounds::<F>(&plane.extent, third_sides);
+    let (low_light, height) = low_light::<F>(plane).unwrap_or((0, 0.0));
     WorldPlane {
-        normal: f32x3(plane.normal),
-        offset: plane.offset.value as f32,
+        normal: nearest(plane.normal),
+        offset: plane.offset.nearest(),
         axis_mask,
         group: world.groups[plane.object],
         fixed_coordinate,
         object: plane.object as u32,
-        row_0: f32x3(rows[0]),
-        origin_0: origin[0].value as f32,
-        row_1: f32x3(rows[1]),
-        origin_1: origin[1].value as f32,
-        lengths: lengths.map(|d| d.value as f32),
+        row_0: nearest(rows[0]),
+        origin_0: origin[0].nearest(),
+        row_1: nearest(rows[1]),
+        origin_1: origin[1].nearest(),
+        lengths: lengths.map(|d| d.nearest()),
         lights_on_surface: bits(&plane.lights_on_surface),
         bounded,
         highest,
-        sides_error: round_up(SIDES_ROUNDINGS * U * most),
+        sides_error: F::round_up(SIDES_ROUNDINGS * F::U * most),
         low_light,
         height,
     }
 }
 
-fn world_sphere(world: &World<Bounded>, sphere: &prepare::WorldSphere<Bounded>) -> WorldSphere {
+fn world_sphere<F: Format>(
+    world: &World<F::Number>,
+    sphere: &prepare::WorldSphere<F::Number>,
+) -> WorldSphere {
     WorldSphere {
-        center: f32x3(sphere.center),
-        radius: factor(sphere.radius.value),
+        center: nearest(sphere.center),
+        radius: factor(sphere.radius.nearest()),
         group: world.groups[sphere.object],
         object: sphere.object as u32,
         lights_on_surface: bits(&sphere.lights_on_surface),
-        size: size(sphere.center),
-        inverse_radius: (Bounded::exact(1.0) / sphere.radius).value as f32,
+        size: size::<F>(sphere.center),
+        inverse_radius: (F::Number::exact(1.0) / sphere.radius).nearest(),
         pad: Default::default(),
     }
 }

@@ -1,7 +1,8 @@
-//! The prepared scene rounded to f32: flat records for the GPU, and the numbers that go into the shader's text.
+//! The prepared scene rounded to f32, or f64: flat records for the GPU, and the numbers that go into the shader's text.
 
 mod camera;
 mod lit;
+mod numbers;
 mod primary;
 mod projector;
 mod quadric;
@@ -19,10 +20,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, round_up};
+use super::format::{Format, Known, Single};
 use super::kind::SurfaceKind;
-use super::records::{
-    BvhNode, Object, PackedCamera, Plane, Polygon, ProceduralPlane, Quadric, Sphere, SphereAndHit,
-    SphereHit, Texplane, TiledPlane,
+use super::records::PackedCamera;
+use super::records::wide::{
+    BvhNode, Object, Plane, Polygon, ProceduralPlane, Quadric, Sphere, SphereAndHit, SphereHit,
+    Texplane, TiledPlane,
 };
 use crate::prepare::plane::Sides;
 use crate::prepare::screen_grid::ScreenGrid;
@@ -31,57 +34,58 @@ use crate::real::{Bounded, V3};
 use crate::scene::Scene;
 use crate::settings::{SamplePattern, Settings};
 use camera::camera;
+use numbers::{factor, factors, nearest};
 use shared::Surfaces;
 use surface::{procedural_plane, texplane, tiled_plane};
 use trees::{Trees, node_size};
 
 /// The whole scene, packed.
 #[derive(Debug, Clone)]
-pub struct Packed {
+pub struct Packed<F: Format = Single> {
     /// The camera.
-    pub camera: PackedCamera,
+    pub camera: PackedCamera<F>,
     /// Lengths are in units of 2^scale.
     pub scale: i32,
     /// One for each object of the scene.
-    pub objects: Vec<Object>,
+    pub objects: Vec<F::Record<Object>>,
     /// The kinds of the objects that a ray can hit.
     pub kinds: Vec<SurfaceKind>,
     /// Planes without end that a primary ray can hit.
-    pub planes: Vec<Plane>,
+    pub planes: Vec<F::Record<Plane>>,
     /// Rectangles and triangles that a primary ray can hit; last those triangles that are in the screen's cells.
-    pub polygons: Vec<Polygon>,
+    pub polygons: Vec<F::Record<Polygon>>,
     /// How many those are.
     pub grid_polygons: usize,
     /// The trees over the spheres and over the triangles of a lit scene, for rays from anywhere; empty without.
-    pub bvh: Vec<BvhNode>,
+    pub bvh: Vec<F::Record<BvhNode>>,
     /// Depth of the deeper one.
     pub bvh_depth: usize,
     /// The root of the triangles' tree, if there is one.
     pub triangle_root: Option<usize>,
     /// Spheres that a primary ray can hit.
-    pub spheres: Vec<Sphere>,
+    pub spheres: Vec<F::Record<Sphere>>,
     /// Which of them are seen where on the screen, if they are many.
     pub screen_grid: Option<Arc<ScreenGrid>>,
     /// One for each of `spheres`, if anybody looks at hits on spheres: where it is hit.
-    pub sphere_points: Vec<SphereHit>,
+    pub sphere_points: Vec<F::Record<SphereHit>>,
     /// Tiled planes.
-    pub tiled_planes: Vec<TiledPlane>,
+    pub tiled_planes: Vec<F::Record<TiledPlane>>,
     /// Procedural planes.
-    pub pplanes: Vec<ProceduralPlane>,
+    pub pplanes: Vec<F::Record<ProceduralPlane>>,
     /// Texplanes.
-    pub texplanes: Vec<Texplane>,
+    pub texplanes: Vec<F::Record<Texplane>>,
     /// The texels of all textures that a texplane shows, bottom rows first.
     pub texels: Vec<u32>,
     /// What is known of the planes' indices along columns and rows.
     pub tables: Tables,
     /// What a lit scene needs beside.
-    pub lit: Option<Lit>,
+    pub lit: Option<Lit<F>>,
     /// A surface farther away than where 1/|P| is this is black, whatever it is; of scenes without lights.
     pub dark: f32,
     /// The largest coordinate of the tree's boxes, all three summed.
     pub tree_size: f32,
     /// Quadrics, for all rays.
-    pub quadrics: Vec<Quadric>,
+    pub quadrics: Vec<F::Record<Quadric>>,
     /// Why the error bounds cannot be relied on, if they cannot.
     pub unprovable: Option<&'static str>,
 }
@@ -94,6 +98,13 @@ impl Packed {
 
     /// Rounds a scene to f32 that has been prepared as the settings say.
     pub fn prepared(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Self {
+        Self::rounded(prepared, scene, settings)
+    }
+}
+
+impl<F: Format> Packed<F> {
+    /// Rounds a scene to a format that has been prepared as the settings say.
+    pub fn rounded(prepared: &Prepared<F::Number>, scene: &Scene, settings: &Settings) -> Self {
         let lattice = match settings.supersampling().map(|several| several.spread) {
             None => 1.0,
             Some(SamplePattern::Hash) => 1.0 / 1024.0,
@@ -105,15 +116,15 @@ impl Packed {
             lattice,
         };
         let screen = &screen;
-        let trees = Trees::new(prepared.world.as_ref());
+        let trees = Trees::<F>::new(prepared.world.as_ref());
         let surfaces = Surfaces::new(prepared);
         let mut packed = Self {
-            camera: camera(&prepared.camera, screen),
+            camera: camera::<F>(&prepared.camera, screen),
             scale: prepared.camera.scale,
             objects: prepared
                 .materials
                 .par_iter()
-                .map(|&m| object(prepared.palette[m].ambient))
+                .map(|&m| F::record(object(prepared.palette[m].ambient)))
                 .collect(),
             kinds: Vec::new(),
             planes: Vec::new(),
@@ -133,7 +144,7 @@ impl Packed {
             lit: None,
             dark: 0.0,
             tree_size: 0.0,
-            quadrics: quadric::all(scene, prepared),
+            quadrics: quadric::all::<F>(scene, prepared),
             unprovable: None,
         };
         packed.pack_primary(prepared, &surfaces, screen);
@@ -146,16 +157,16 @@ impl Packed {
                 packed.pack_surface(prepared, object, &mut textures, 0);
             }
         } else {
-            let planes = packed.planes.iter().map(|p| p.object);
+            let planes = packed.planes.iter().map(|p| F::wide(p).object);
             let objects: Vec<u32> = planes
-                .chain(packed.polygons.iter().map(|r| r.object))
+                .chain(packed.polygons.iter().map(|r| F::wide(r).object))
                 .collect();
-            let curved = packed.quadrics.iter().map(|q| q.object);
+            let curved = packed.quadrics.iter().map(|q| F::wide(q).object);
             for object in objects.into_iter().chain(curved.collect::<Vec<_>>()) {
                 packed.pack_surface(prepared, object as usize, &mut textures, 0);
             }
             for record in 0..packed.spheres.len() {
-                let object = packed.spheres[record].object as usize;
+                let object = F::wide(&packed.spheres[record]).object as usize;
                 packed.pack_surface(prepared, object, &mut textures, record);
             }
         }
@@ -166,29 +177,39 @@ impl Packed {
             .as_ref()
             .map(|world| Lit::new(prepared, world, &packed, &projectors));
         packed.dark = packed.darkness();
-        packed.tree_size = round_up(packed.bvh.iter().map(node_size).fold(0.0, f64::max));
+        packed.tree_size = round_up(
+            packed
+                .bvh
+                .iter()
+                .map(|node| node_size(&F::wide(node)))
+                .fold(0.0, f64::max),
+        );
         packed.unprovable = packed.doubtful_numbers();
         packed
     }
 
     /// What primary rays can hit.
-    fn pack_primary(&mut self, scene: &Prepared<Bounded>, surfaces: &Surfaces, screen: &Screen) {
+    fn pack_primary(&mut self, scene: &Prepared<F::Number>, surfaces: &Surfaces, screen: &Screen) {
         for plane in &scene.planes {
             let group = surfaces.shared(plane.object);
             match &plane.sides {
-                Sides::Unbounded => {
-                    self.planes
-                        .push(primary::plane(&scene.camera, plane, screen, group))
-                }
+                Sides::Unbounded => self.planes.push(F::record(primary::plane::<F>(
+                    &scene.camera,
+                    plane,
+                    screen,
+                    group,
+                ))),
                 Sides::Rectangle(strips) => {
-                    let sides = primary::rectangle(&scene.camera, plane, strips, screen);
-                    let base = primary::plane(&scene.camera, plane, screen, group);
-                    self.polygons.push(primary::polygon(base, sides, 0.0));
+                    let sides = primary::rectangle::<F>(&scene.camera, plane, strips, screen);
+                    let base = primary::plane::<F>(&scene.camera, plane, screen, group);
+                    self.polygons
+                        .push(F::record(primary::polygon(base, sides, 0.0)));
                 }
                 Sides::Triangle(sides) => {
-                    let sides = primary::triangle(&scene.camera, sides, screen);
-                    let base = primary::plane(&scene.camera, plane, screen, group);
-                    self.polygons.push(primary::polygon(base, sides, 0.0));
+                    let sides = primary::triangle::<F>(&scene.camera, sides, screen);
+                    let base = primary::plane::<F>(&scene.camera, plane, screen, group);
+                    self.polygons
+                        .push(F::record(primary::polygon(base, sides, 0.0)));
                 }
             }
         }
@@ -196,14 +217,19 @@ impl Packed {
             scene
                 .screen_grid
                 .as_ref()
-                .map_or(0.0, |screen_grid| screen_grid.max_inverse[place])
+                .map_or(0.0, |screen_grid| screen_grid.max_inverse[place].into())
         };
         self.spheres = scene
             .spheres
             .par_iter()
             .enumerate()
             .map(|(place, sphere)| {
-                primary::sphere(&scene.camera, sphere, screen, max_inverse(place))
+                F::record(primary::sphere::<F>(
+                    &scene.camera,
+                    sphere,
+                    screen,
+                    max_inverse(place),
+                ))
             })
             .collect();
         let grid_polygons = scene
@@ -214,23 +240,23 @@ impl Packed {
                 let Sides::Triangle(sides) = &plane.sides else {
                     return None;
                 };
-                let sides = primary::triangle(&scene.camera, sides, screen);
+                let sides = primary::triangle::<F>(&scene.camera, sides, screen);
                 // Triangles of a cell are not in the order of the file, so that none stands for others on its plane.
-                let base = primary::plane(&scene.camera, plane, screen, 0);
+                let base = primary::plane::<F>(&scene.camera, plane, screen, 0);
                 let max_inverse = max_inverse(scene.spheres.len() + i);
-                Some(primary::polygon(base, sides, max_inverse))
+                Some(F::record(primary::polygon(base, sides, max_inverse)))
             });
         let before = self.polygons.len();
         self.polygons.par_extend(grid_polygons);
         self.grid_polygons = self.polygons.len() - before;
         // Plain spheres without light are not looked at where they are hit.
         let psphere =
-            |surface: &prepare::Surface<Bounded>| matches!(surface, prepare::Surface::Psphere(_));
+            |surface: &prepare::Surface<F::Number>| matches!(surface, prepare::Surface::Psphere(_));
         if scene.world.is_some() || scene.surfaces.iter().any(psphere) {
             self.sphere_points = scene
                 .spheres
                 .par_iter()
-                .map(|sphere| primary::sphere_hit(&scene.camera, sphere, screen))
+                .map(|sphere| F::record(primary::sphere_hit::<F>(&scene.camera, sphere, screen)))
                 .collect();
         }
     }
@@ -238,16 +264,17 @@ impl Packed {
     /// 1/|P| below which the byte is 0 whatever is hit: `DARKNESS`/255 over the brightest ambient reflectivity there
     /// is.
     fn darkness(&self) -> f32 {
-        let brightest = |color: &[f32; 3]| f64::from(color.iter().copied().fold(0.0, f32::max));
-        let objects = self.objects.iter().map(|o| brightest(&o.ambient));
-        let others = self.tiled_planes.iter().map(|t| brightest(&t.altmaterial));
+        let brightest = |color: [f64; 3]| color.into_iter().fold(0.0, f64::max);
+        let objects = self.objects.iter().map(|o| brightest(F::wide(o).ambient));
+        let others = self.tiled_planes.iter();
+        let others = others.map(|t| brightest(F::wide(t).altmaterial));
         let ambient = objects.chain(others).fold(0.0, f64::max);
         let most = self
             .kinds
             .iter()
             .map(|kind| kind.brightest(ambient))
             .fold(1e-30, f64::max);
-        (DARKNESS / (most * BRIGHT_GROWTH * f64::from(self.camera.numbers.gain)))
+        (DARKNESS / (most * BRIGHT_GROWTH * F::wide(&self.camera.numbers).gain))
             .min(f64::from(f32::MAX)) as f32
     }
 
@@ -259,19 +286,19 @@ impl Packed {
     /// Packs what modulates an object's material, and notes it in the object.
     fn pack_surface(
         &mut self,
-        scene: &Prepared<Bounded>,
+        scene: &Prepared<F::Number>,
         object: usize,
         textures: &mut [Option<u32>],
         record: usize,
     ) {
         match &scene.surfaces[object] {
             prepare::Surface::Tiled(tiled) => {
-                self.tiled_planes
-                    .push(tiled_plane(scene, tiled, scene.materials[object]));
+                let record = tiled_plane::<F>(scene, tiled, scene.materials[object]);
+                self.tiled_planes.push(F::record(record));
                 self.set_kind(object, SurfaceKind::Tiled, self.tiled_planes.len() - 1);
             }
             prepare::Surface::Pplane(pplane) => {
-                self.pplanes.push(procedural_plane(pplane));
+                self.pplanes.push(F::record(procedural_plane::<F>(pplane)));
                 self.set_kind(
                     object,
                     SurfaceKind::Pplane(pplane.shader),
@@ -280,7 +307,8 @@ impl Packed {
             }
             prepare::Surface::Textured(textured) => {
                 let first = self.pack_texture(scene, textured.texture, textures);
-                self.texplanes.push(texplane(textured, first));
+                self.texplanes
+                    .push(F::record(texplane::<F>(textured, first)));
                 self.set_kind(object, SurfaceKind::Textured, self.texplanes.len() - 1);
             }
             prepare::Surface::Psphere(shader) => {
@@ -292,22 +320,26 @@ impl Packed {
 
     fn set_kind(&mut self, object: usize, kind: SurfaceKind, record: usize) {
         // A plain object needs no record; the others are far fewer than 2²⁴ before any buffer is full.
-        self.objects[object].kind = if kind == SurfaceKind::Plain {
+        let mut object_record: Object = F::wide(&self.objects[object]);
+        object_record.kind = if kind == SurfaceKind::Plain {
             0
         } else {
             kind.code() | ((record as u32) << 8)
         };
+        self.objects[object] = F::record(object_record);
         if self.kinds.last() != Some(&kind) {
             self.kinds.push(kind);
         }
     }
 
     /// The spheres with where they are hit, for shaders that look at hits.
-    pub fn sphere_records(&self) -> Vec<SphereAndHit> {
+    pub fn sphere_records(&self) -> Vec<F::Record<SphereAndHit>> {
         let pairs = self.spheres.iter().zip(&self.sphere_points);
-        pairs
-            .map(|(&sphere, &hit)| SphereAndHit { sphere, hit })
-            .collect()
+        let both = pairs.map(|(sphere, hit)| SphereAndHit {
+            sphere: F::wide(sphere),
+            hit: F::wide(hit),
+        });
+        both.map(F::record).collect()
     }
 
     /// How many objects a primary ray can hit.
@@ -341,7 +373,7 @@ impl Packed {
     }
 
     /// The polygon of this place in the cells of the screen, which count spheres first.
-    pub fn grid_polygon(&self, place: usize) -> &Polygon {
+    pub fn grid_polygon(&self, place: usize) -> &F::Record<Polygon> {
         &self.polygons[self.loose_polygons() + place - self.spheres.len()]
     }
 
@@ -356,24 +388,7 @@ impl Packed {
     }
 }
 
-/// A factor of a colour in f32: one that is not 0 stays so, so that the check of its size sees it.
-pub(super) fn factor(value: f64) -> f32 {
-    if value > 0.0 {
-        (value as f32).max(f32::MIN_POSITIVE)
-    } else {
-        0.0
-    }
-}
-
-pub(super) fn factors(v: V3<Bounded>) -> [f32; 3] {
-    [v.x, v.y, v.z].map(|v| factor(v.value))
-}
-
-pub(super) fn f32x3(v: V3<Bounded>) -> [f32; 3] {
-    [v.x.value as f32, v.y.value as f32, v.z.value as f32]
-}
-
-fn object(ambient: V3<Bounded>) -> Object {
+fn object(ambient: V3<impl Known>) -> Object {
     Object {
         ambient: factors(ambient),
         kind: 0,

@@ -1,16 +1,17 @@
 //! The records of projectors, and the textures that they and texplanes share.
 
-use super::{Packed, f32x3, factor, lit};
+use super::{Packed, factor, lit, nearest};
 use crate::prepare::{self, Prepared, World};
-use crate::real::{Bounded, Real, V3};
-use crate::shader::bounds::{FRACTION_ROUNDINGS, GROWTH, U, round_up, upper_bound};
-use crate::shader::records::Projector;
+use crate::real::{Real as _, V3};
+use crate::shader::bounds::{FRACTION_ROUNDINGS, GROWTH, upper_bound};
+use crate::shader::format::{Format, Known as _};
+use crate::shader::records::wide::Projector;
 
-impl Packed {
+impl<F: Format> Packed<F> {
     /// Packs a texture unless it has been, and returns where its texels begin.
     pub(super) fn pack_texture(
         &mut self,
-        scene: &Prepared<Bounded>,
+        scene: &Prepared<F::Number>,
         texture: usize,
         textures: &mut [Option<u32>],
     ) -> u32 {
@@ -28,8 +29,8 @@ impl Packed {
     /// For each light its record if it is a projector that lights anything, and the textures of those.
     pub(super) fn pack_projectors(
         &mut self,
-        scene: &Prepared<Bounded>,
-        world: &World<Bounded>,
+        scene: &Prepared<F::Number>,
+        world: &World<F::Number>,
         textures: &mut [Option<u32>],
     ) -> Vec<Option<Projector>> {
         let lights = world.lights.iter().zip(world.picture_planes.iter());
@@ -38,7 +39,12 @@ impl Packed {
                 let projector = light.projector.as_ref()?;
                 let reach = projector.reach?;
                 let first = self.pack_texture(scene, projector.picture.texture, textures);
-                Some(record(light.location, projector, reach, (first, group)))
+                Some(record::<F>(
+                    light.location,
+                    projector,
+                    reach,
+                    (first, group),
+                ))
             })
             .collect()
     }
@@ -46,10 +52,10 @@ impl Packed {
 
 /// The record of a projector at `location`; with the first texel of its texture, and the number of the surface that its
 /// picture's plane is.
-fn record(
-    location: V3<Bounded>,
-    projector: &prepare::projector::Projector<Bounded>,
-    reach: Bounded,
+fn record<F: Format>(
+    location: V3<F::Number>,
+    projector: &prepare::projector::Projector<F::Number>,
+    reach: F::Number,
     (first, group): (u32, u32),
 ) -> Projector {
     let prepare::projector::Projector {
@@ -66,19 +72,19 @@ fn record(
     let ends = [0, 1].map(|i| rectangle.dimensions[i] * picture.per_unit[i]);
     let errors = [0, 1].map(|i| {
         let (start, end) = (starts[i], ends[i]);
-        let roundings = FRACTION_ROUNDINGS * U * (1.0 + upper_bound(start) + upper_bound(end));
-        round_up(roundings + GROWTH * (start.error + end.error))
+        let roundings = FRACTION_ROUNDINGS * F::U * (1.0 + upper_bound(start) + upper_bound(end));
+        F::round_up(roundings + GROWTH * (start.off() + end.off()))
     });
     Projector {
-        normal: f32x3(*direction * (Bounded::exact(1.0) / length)),
-        reach: factor((reach / length).value),
-        row_0: f32x3(rows[0]),
-        start_0: starts[0].value as f32,
-        row_1: f32x3(rows[1]),
-        start_1: starts[1].value as f32,
-        ends: ends.map(|end| end.value as f32),
+        normal: nearest(*direction * (F::Number::exact(1.0) / length)),
+        reach: factor((reach / length).nearest()),
+        row_0: nearest(rows[0]),
+        start_0: starts[0].nearest(),
+        row_1: nearest(rows[1]),
+        start_1: starts[1].nearest(),
+        ends: ends.map(|end| end.nearest()),
         size: picture.size,
-        row_lengths: rows.map(lit::size),
+        row_lengths: rows.map(lit::size::<F>),
         errors,
         first,
         repeats: u32::from(picture.repeats),

@@ -1,7 +1,7 @@
 //! Which objects share a surface.
 
 use crate::prepare::Prepared;
-use crate::real::Bounded;
+use crate::real::Real;
 
 /// Numbers of surfaces, and which of them several objects share.
 #[derive(Debug)]
@@ -13,7 +13,7 @@ pub(super) struct Surfaces<'a> {
 }
 
 impl<'a> Surfaces<'a> {
-    pub(super) fn new(prepared: &'a Prepared<Bounded>) -> Self {
+    pub(super) fn new(prepared: &'a Prepared<impl Real>) -> Self {
         let groups = &prepared.groups;
         let mut members = vec![0_u32; groups.iter().map(|g| *g as usize + 1).max().unwrap_or(0)];
         for (group, hidden) in groups.iter().zip(prepared.hidden.iter()) {

@@ -6,7 +6,7 @@ use dashu_int::IBig;
 use crate::prepare::index::{Index, indices};
 use crate::prepare::{Prepared, Surface};
 use crate::procedural::{self, Family};
-use crate::real::Bounded;
+use crate::real::Real;
 use crate::real::rational::parity;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -34,7 +34,7 @@ const MOST_TEXELS: u32 = 0x7fff;
 impl Tables {
     /// The tables of the planes that a primary ray can hit; none where pixels are not certified, or rays pass beside
     /// their middles.
-    pub(super) fn new(scene: &Scene, prepared: &Prepared<Bounded>, settings: &Settings) -> Self {
+    pub(super) fn new(scene: &Scene, prepared: &Prepared<impl Real>, settings: &Settings) -> Self {
         let mut tables = Self::default();
         if !settings.has_gpu_bounds() || settings.supersampling().is_some() {
             return tables;
@@ -61,7 +61,7 @@ impl Tables {
 }
 
 /// The entries of a surface; None if nothing is known.
-fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<Vec<u32>> {
+fn entries(scene: &Scene, object: usize, surface: &Surface<impl Real>) -> Option<Vec<u32>> {
     // For index number i, the bits that stand for its floor.
     let bits: &dyn Fn(usize, &IBig) -> u32 = match surface {
         Surface::Tiled(tiled) => &|i, floor| parity_bits(i, parity(floor) ^ tiled.index[i].parity),
@@ -80,8 +80,8 @@ fn entries(scene: &Scene, object: usize, surface: &Surface<Bounded>) -> Option<V
     let mut known = false;
     let indices = indices(scene, &scene.objects[object]);
     let same = |i: usize| match surface {
-        Surface::Tiled(tiled) => tiled.index[i].per_unit.value == 0.0,
-        Surface::Pplane(pplane) => pplane.index[i].per_unit.value == 0.0,
+        Surface::Tiled(tiled) => tiled.index[i].per_unit.to_f64() == 0.0,
+        Surface::Pplane(pplane) => pplane.index[i].per_unit.to_f64() == 0.0,
         _ => false,
     };
     for (i, index) in (0..).zip(&indices) {

@@ -2,20 +2,23 @@
 
 use crate::prepare::World;
 use crate::prepare::bvh::Bvh;
-use crate::real::Bounded;
-use crate::shader::records::BvhNode;
+use crate::shader::format::Format;
+use crate::shader::records::wide::BvhNode;
 
 /// The nodes of the spheres' tree, then of the triangles'.
-#[derive(Default)]
-pub(super) struct Trees {
-    pub(super) nodes: Vec<BvhNode>,
+pub(super) struct Trees<F: Format> {
+    pub(super) nodes: Vec<F::Record<BvhNode>>,
     pub(super) depth: usize,
     pub(super) triangle_root: Option<usize>,
 }
 
-impl Trees {
-    pub(super) fn new(world: Option<&World<Bounded>>) -> Self {
-        let mut trees = Self::default();
+impl<F: Format> Trees<F> {
+    pub(super) fn new(world: Option<&World<F::Number>>) -> Self {
+        let mut trees = Self {
+            nodes: Vec::new(),
+            depth: 0,
+            triangle_root: None,
+        };
         let Some(world) = world else { return trees };
         if let Some(tree) = &world.sphere_tree {
             trees.add(tree, 0);
@@ -31,16 +34,18 @@ impl Trees {
     fn add(&mut self, tree: &Bvh, first: usize) {
         let root = self.nodes.len();
         self.depth = self.depth.max(tree.depth);
-        self.nodes.extend(tree.nodes.iter().map(|node| BvhNode {
-            min: node.min,
-            first: node.first + if node.count == 0 { root } else { first } as u32,
-            max: node.max,
-            count: node.count,
+        self.nodes.extend(tree.nodes.iter().map(|node| {
+            F::record(BvhNode {
+                min: node.min.map(f64::from),
+                first: node.first + if node.count == 0 { root } else { first } as u32,
+                max: node.max.map(f64::from),
+                count: node.count,
+            })
         }));
     }
 }
 
 pub(super) fn node_size(node: &BvhNode) -> f64 {
-    let corner = |i: usize| f64::from(node.min[i].abs().max(node.max[i].abs()));
+    let corner = |i: usize| node.min[i].abs().max(node.max[i].abs());
     corner(0) + corner(1) + corner(2)
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use plumb::prepare::Prepared;
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, SamplePattern, Settings};
 use plumb::scene::{
@@ -11,6 +12,7 @@ use plumb::scene::{
 };
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::format::Double;
 use plumb::shader::pack::Packed;
 
 use crate::common::light;
@@ -332,13 +334,35 @@ pub(super) fn composed(chosen: &[Ingredient]) -> (String, FeatureSet) {
     (compose(&packed, &features, Entry::Picture), features)
 }
 
+/// The shaders that list pixels in doubt, and take them from the list in f64; None where they do not.
+pub(super) fn doubled(chosen: &[Ingredient]) -> Option<[String; 2]> {
+    let (scene, settings) = (scene(chosen), settings(chosen));
+    let (packed, features) = packed(chosen);
+    let features = features.for_a_file(true).with_a_list();
+    let double =
+        Packed::<Double>::rounded(&Prepared::new(&scene, settings.view()), &scene, &settings);
+    features.is_listed().then(|| {
+        [
+            compose(&packed, &features, Entry::Picture),
+            compose(&double, &features.for_the_list(), Entry::Listed),
+        ]
+    })
+}
+
 pub(super) fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
+    let (scene, settings) = (scene(chosen), settings(chosen));
+    let packed = Packed::new(&scene, &settings);
+    let features = FeatureSet::new(&packed, &settings, 8);
+    (packed, features)
+}
+
+fn scene(chosen: &[Ingredient]) -> Scene {
     let texels = Texels {
         width: 2,
         height: 1,
         rgb: vec![0; 6],
     };
-    let scene = Scene {
+    Scene {
         camera: Camera {
             name: "c".into(),
             pixeldim: [64, 48],
@@ -355,9 +379,12 @@ pub(super) fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
             texels: Arc::new(texels),
             remark: None,
         }],
-    };
+    }
+}
+
+fn settings(chosen: &[Ingredient]) -> Settings {
     let has = |ingredient| chosen.contains(&ingredient);
-    let settings = Settings {
+    Settings {
         values: has(Values),
         samples: if has(Samples) || has(CourseSamples) {
             16
@@ -375,8 +402,5 @@ pub(super) fn packed(chosen: &[Ingredient]) -> (Packed, FeatureSet) {
             Precision::Certified
         },
         ..Settings::default()
-    };
-    let packed = Packed::new(&scene, &settings);
-    let features = FeatureSet::new(&packed, &settings, 8);
-    (packed, features)
+    }
 }

@@ -1,7 +1,7 @@
 //! Offsets and sizes of the packed records are those that naga computes for the WGSL structs.
 
 use plumb::shader::binding::BINDINGS;
-use plumb::shader::record::{Layout, Record as _};
+use plumb::shader::record::Layout;
 use plumb::shader::records::{CameraNumbers, Dispatch, layouts};
 
 use super::*;
@@ -88,6 +88,81 @@ fn records_are_laid_out_as_naga_says() {
             assert!(named.contains(found), "{}: {found:?}", layout.wgsl);
         }
     }
+}
+
+/// The same with f64: every number is where the WGSL struct has it.
+#[test]
+fn records_with_f64_are_laid_out_as_naga_says() {
+    let one_ray = |i: &Ingredient| !matches!(i, Samples | CourseSamples | Fast | Values);
+    let light = |i: &Ingredient| {
+        matches!(
+            i,
+            Lamp | Spotlight | Projector(_) | LampInFloor | LampOverFloor | Mirror | Glass | Glint
+        )
+    };
+    let all: Vec<_> = ingredients().into_iter().filter(one_ray).collect();
+    let dark: Vec<_> = all.iter().copied().filter(|i| !light(i)).collect();
+    let modules = [all, dark].map(|chosen| assert_valid(&doubled(&chosen).unwrap()[1], "f64"));
+    let mut compared = 0;
+    for layout in layouts() {
+        // Records of the same name have other members in the shaders of other scenes.
+        let members = layout.members().count();
+        let found = modules
+            .iter()
+            .filter_map(|module| wgsl_struct(module, layout.wgsl))
+            .find(|(found, _)| {
+                let names = layout.members().map(|field| field.name);
+                found.len() == members && names.eq(found.iter().map(|(name, _)| name.as_str()))
+            });
+        let Some((offsets, span)) = found else {
+            continue;
+        };
+        // Word number n holds n, as an f32 or as an integer.
+        let mut bytes = vec![0; layout.size];
+        let words = |field: &plumb::shader::record::FieldLayout| {
+            let count = match field.wgsl {
+                "f32" | "u32" => 1,
+                "vec2f" | "vec2u" | "vec2i" => 2,
+                "vec3f" => 3,
+                "vec4f" => 4,
+                // Of a record within a record the first number is enough.
+                _ => 1,
+            };
+            let first = field.offset / 4;
+            (first..first + count, !field.wgsl.contains(['u', 'i']))
+        };
+        for field in layout.members() {
+            let (words, float) = words(field);
+            for n in words {
+                let number = n as u32 + 1;
+                let word = if float {
+                    (number as f32).to_bits()
+                } else {
+                    number
+                };
+                bytes[4 * n..4 * n + 4].copy_from_slice(&word.to_le_bytes());
+            }
+        }
+        let wide = (layout.widened)(&bytes);
+        assert_eq!(wide.len(), span, "{}", layout.name);
+        for (field, (_, offset)) in layout.members().zip(offsets) {
+            let (words, float) = words(field);
+            for (i, n) in words.enumerate() {
+                let number = n as u32 + 1;
+                if float {
+                    let at = offset + 8 * i;
+                    let found = f64::from_le_bytes(wide[at..at + 8].try_into().unwrap());
+                    assert_eq!(found, f64::from(number), "{}.{}", layout.name, field.name);
+                } else {
+                    let at = offset + 4 * i;
+                    let found = u32::from_le_bytes(wide[at..at + 4].try_into().unwrap());
+                    assert_eq!(found, number, "{}.{}", layout.name, field.name);
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 150, "{compared}");
 }
 
 /// What the table says of bindings is what the shaders declare.

@@ -17,7 +17,7 @@ use plumb::shader::pack::Packed;
 
 use crate::common;
 use ingredients::Ingredient::{self, *};
-use ingredients::{composed, ingredients, objects, packed};
+use ingredients::{composed, doubled, ingredients, objects, packed};
 
 /// Whether an ingredient is a procedural surface whose shader, or one that it calls, names `helper`.
 fn asks(ingredient: Ingredient, helper: &str) -> bool {
@@ -34,7 +34,13 @@ fn asks(ingredient: Ingredient, helper: &str) -> bool {
 
 fn validate(wgsl: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.emit_to_string(wgsl))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    // f64, and u64 for its bits, are what a shader for f64 asks for.
+    let capabilities = if wgsl.contains("f64") {
+        Capabilities::FLOAT64 | Capabilities::SHADER_INT64
+    } else {
+        Capabilities::empty()
+    };
+    let mut validator = Validator::new(ValidationFlags::all(), capabilities);
     validator
         .validate(&module)
         .map_err(|error| error.emit_to_string(wgsl))?;
@@ -116,12 +122,51 @@ fn each_alone_all_pairs_and_all_together_are_valid() {
             Feature::Values,
             Feature::Quad,
             Feature::SphereLoop,
+            Feature::Double,
+            Feature::Listed,
         ];
         assert!(
             found.contains(feature) || elsewhere.contains(feature),
             "{feature:?}"
         );
     }
+}
+
+/// The same in f64, with the list of its pixels.
+#[test]
+fn in_f64_each_alone_all_pairs_and_all_together_are_valid() {
+    let all = ingredients();
+    let mut valid = 0;
+    let mut bad = BTreeSet::new();
+    let mut check = |chosen: &[Ingredient]| {
+        let Some([listing, double]) = doubled(chosen) else {
+            return;
+        };
+        assert_valid(&listing, &format!("{chosen:?}, listing"));
+        assert!(!double.contains("vec3f"), "{double}");
+        if let Err(e) = validate(&double) {
+            bad.insert(e.lines().take(9).collect::<Vec<_>>().join("\n"));
+        }
+        valid += 1;
+    };
+    for (i, a) in all.iter().enumerate() {
+        check(&[*a]);
+        for b in &all[i + 1..] {
+            check(&[*a, *b]);
+        }
+    }
+    let many =
+        |i: &Ingredient| matches!(i, ManyPlanes | ManySpheres | ManyTriangles | ManyQuadrics);
+    let single = |i: &Ingredient| !matches!(i, Samples | CourseSamples | Fast | Values);
+    let one_ray: Vec<_> = all.iter().copied().filter(single).collect();
+    check(&one_ray);
+    let few: Vec<_> = one_ray.iter().copied().filter(|i| !many(i)).collect();
+    check(&few);
+    for b in bad.iter().take(20) {
+        println!("{b}");
+    }
+    assert!(bad.is_empty());
+    assert!(valid > 500, "{valid}");
 }
 
 #[test]
@@ -303,7 +348,7 @@ fn what_is_not_used_is_not_there() {
     let course = composed(&[Plane, CourseSamples]).0;
     assert!(course.contains("offsets[") && !course.contains("jitter_hash"));
     // Samples are in doubt one by one where pixels are certified.
-    assert!(course.contains("pixels.partials"));
+    assert!(course.contains("pixels.records"));
     // They take no buffer of their own: SwiftShader allows ten, and scenes of ours have as many.
     let buffers = |chosen: &[Ingredient]| composed(chosen).0.matches("var<storage").count();
     assert_eq!(buffers(&[Plane, Samples]), buffers(&[Plane]));

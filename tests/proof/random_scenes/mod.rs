@@ -22,6 +22,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use crate::common;
+use crate::doubles::with_doubles;
 use crate::oracle::{self, Answer, Failure, Rules};
 use strategy::{Plan, plan};
 
@@ -108,6 +109,10 @@ fn try_scene(plan: &Plan, gpu_too: bool) -> Tried {
         let mut pictures = vec![(format!("{backend:?}"), rgb)];
         if backend == Backend::Cpu {
             pictures.extend(with_lanes(&scene, &wanted, &pictures[0].1));
+        }
+        if backend == Backend::Gpu {
+            let doubled = with_doubles(&scene, &wanted, &pictures[0].1);
+            pictures.extend(doubled.map(|rgb| ("the GPU in f64".to_owned(), rgb)));
         }
         for (by, rgb) in pictures {
             let differences = oracle::differences(&scene, &answer, &rgb);

@@ -1,0 +1,67 @@
+//! The stage behind f32 on a GPU that has f64: the shader that takes pixels from a list. It is made while the first bands
+//! are rendered without it.
+
+use std::sync::OnceLock;
+
+use super::GpuError;
+use super::device::Gpu;
+use super::pipeline::Pipeline;
+use crate::shader::compose::{Entry, compose};
+use crate::shader::feature_set::FeatureSet;
+use crate::shader::format::Double as F64;
+use crate::shader::pack::Packed;
+
+/// The stage, whether it is there yet or not.
+#[derive(Debug, Default)]
+pub struct Double {
+    pipeline: OnceLock<Pipeline>,
+    worth: OnceLock<bool>,
+}
+
+/// Pixels of a dispatch that are taken in f64 until it is known whether that is worth its time.
+const TRIED: u32 = 1024;
+
+impl Double {
+    /// Makes it, from a scene in f64 and the features of the picture's shader, which lists pixels. A scene whose bounds
+    /// cannot be relied on has no such stage.
+    ///
+    /// # Errors
+    /// What the device says; there is no such stage then.
+    pub fn make(
+        &self,
+        gpu: &Gpu,
+        packed: &Packed<F64>,
+        features: FeatureSet,
+    ) -> Result<(), GpuError> {
+        if packed.unprovable.is_some() {
+            return Ok(());
+        }
+        let features = features.for_the_list();
+        let wgsl = compose(packed, &features, Entry::Listed);
+        self.set(Pipeline::new(gpu, packed, &features, &wgsl)?);
+        Ok(())
+    }
+
+    /// Has its pipeline made already.
+    pub fn set(&self, pipeline: Pipeline) {
+        // It is made once.
+        let _ = self.pipeline.set(pipeline);
+    }
+
+    /// Its pipeline, once that is there, and how many pixels of a dispatch it is to take at most; none where it is not
+    /// worth its time.
+    pub fn pipeline(&self) -> Option<(&Pipeline, u32)> {
+        let pipeline = self.pipeline.get()?;
+        match self.worth.get() {
+            None => Some((pipeline, TRIED)),
+            Some(true) => Some((pipeline, u32::MAX)),
+            Some(false) => None,
+        }
+    }
+
+    /// Takes all pixels from now on, or leaves all to the CPU, which decides them in less time.
+    pub fn judge(&self, is_worth: bool) {
+        // What was found first counts.
+        let _ = self.worth.set(is_worth);
+    }
+}

@@ -1,0 +1,185 @@
+//! The GPU in f64: pixels that f32 leaves in doubt, decided by the same shader with other numbers. They are held to the
+//! oracle with all others (`certified`, `random_scenes`); here is how they come about, what of them is left, and that a
+//! bound that is missing is noticed.
+
+use std::ops::ControlFlow;
+
+use plumb::certify::trust;
+use plumb::gpu::adapters;
+use plumb::gpu::bands;
+use plumb::gpu::double::Double;
+use plumb::gpu::pipeline::Pipeline;
+use plumb::prepare::Prepared;
+use plumb::render::{Backend, Settings};
+use plumb::scene::Scene;
+use plumb::shader::compose::{Entry, compose};
+use plumb::shader::feature_set::FeatureSet;
+use plumb::shader::format::Double as F64;
+use plumb::shader::pack::Packed;
+use plumb::stopwatch::Stopwatch;
+
+use crate::common;
+
+/// What f64 made of a picture.
+#[derive(Debug, Default)]
+pub(crate) struct Doubled {
+    /// Places, from the top left, and bytes.
+    pub(crate) decided: Vec<(usize, [u8; 3])>,
+    /// How many pixels are left to the CPU.
+    pub(crate) left: usize,
+}
+
+/// Renders with the device's f32 and what f64 makes of its doubts; none where the picture has no such stage.
+pub(crate) fn doubled(scene: &Scene, settings: &Settings) -> Option<Doubled> {
+    doubled_by(scene, settings, &|text| text)
+}
+
+/// The same with another text of the shader.
+fn doubled_by(
+    scene: &Scene,
+    settings: &Settings,
+    change: &dyn Fn(String) -> String,
+) -> Option<Doubled> {
+    let gpu = adapters::shared(None).unwrap_or_else(|error| panic!("{error}"));
+    if !trust::has_doubles(&gpu, None) {
+        // Others of our drivers have no f64; lavapipe has.
+        assert!(!gpu.name.contains("llvmpipe"), "{} has f64", gpu.name);
+        return None;
+    }
+    let packed = Packed::new(scene, settings);
+    let features = FeatureSet::new(&packed, settings, gpu.lanes);
+    let features = features.for_a_file(gpu.software).with_a_list();
+    let prepared = Prepared::new(scene, settings.view());
+    let in_f64 = Packed::<F64>::rounded(&prepared, scene, settings);
+    if !features.is_listed() || packed.unprovable.is_some() || in_f64.unprovable.is_some() {
+        return None;
+    }
+    let wgsl = compose(&packed, &features, Entry::Picture);
+    let pipeline = Pipeline::new(&gpu, &packed, &features, &wgsl).unwrap();
+    let double = Double::default();
+    let listed = features.for_the_list();
+    let text = change(compose(&in_f64, &listed, Entry::Listed));
+    double.set(Pipeline::new(&gpu, &in_f64, &listed, &text).unwrap());
+    double.judge(true);
+    let [width, height] = scene.camera.pixeldim;
+    let frame = bands::Frame {
+        width,
+        rows: 0..height,
+        tests: packed.tests(),
+        jitter: &settings.sampling(width, height),
+        band_rows: None,
+        dispatch_seconds: bands::DISPATCH_SECONDS,
+        double: Some(&double),
+        canvas: None,
+    };
+    let mut all = Doubled::default();
+    bands::run(
+        &gpu,
+        &pipeline,
+        &frame,
+        &mut bands::from_the_top(0..height),
+        &|| false,
+        &mut Stopwatch::start(),
+        &mut |rendered| {
+            let first = ((height - rendered.band.rows.end) * width) as usize;
+            let rgb = rendered.band.rgb.as_chunks().0;
+            let decided = rendered.doubled.iter().map(|place| *place as usize);
+            all.decided
+                .extend(decided.map(|place| (first + place, rgb[place])));
+            all.left += rendered.doubtful.len();
+            ControlFlow::Continue(())
+        },
+    )
+    .unwrap();
+    Some(all)
+}
+
+/// A picture with the bytes that f64 is sure of.
+pub(crate) fn with_doubles(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Option<Vec<u8>> {
+    let mut rgb = rgb.to_vec();
+    for (place, bytes) in doubled(scene, settings)?.decided {
+        rgb.as_chunks_mut().0[place] = bytes;
+    }
+    Some(rgb)
+}
+
+/// A scene of a folder, at this size or its own; and how it is rendered.
+fn scene(name: &str, pixeldim: Option<[u32; 2]>) -> (Scene, Settings) {
+    let mut scene = common::read(&common::scenes().join(name));
+    scene.camera.pixeldim = pixeldim.unwrap_or(scene.camera.pixeldim);
+    (scene, common::on(Backend::Gpu))
+}
+
+/// Most of what f32 leaves, f64 decides, and every byte of that is right.
+#[test]
+fn little_is_left_behind_f64() {
+    for (name, left_of_a_hundred) in [
+        ("lit/mirror_and_glass.txt", 10),
+        ("lit/glint.txt", 10),
+        ("lit/hall_of_mirrors.txt", 10),
+        ("gallery/quadric_chess.txt", 10),
+        ("lit/procedural_lit.txt", 10),
+        ("lit/magic_lantern.txt", 10),
+        ("gallery/procedural_all.txt", 20),
+    ] {
+        let (scene, settings) = scene(name, Some([320, 240]));
+        let Some(all) = doubled(&scene, &settings) else {
+            return;
+        };
+        let (cpu, _) = common::picture(&scene, &common::on(Backend::Cpu));
+        let right = cpu.as_chunks::<3>().0;
+        for (place, bytes) in &all.decided {
+            assert_eq!(right[*place], *bytes, "{name}, {place}");
+        }
+        println!("{name}: {} decided, {} left", all.decided.len(), all.left);
+        assert!(all.decided.len() > 20, "{name}");
+        let listed = all.decided.len() + all.left;
+        assert!(all.left * 100 <= left_of_a_hundred * listed, "{name}");
+    }
+}
+
+/// Where f64 takes its bounds for nothing, it decides what it must not, and the bytes show it.
+#[test]
+fn bounds_of_nothing_are_noticed() {
+    let without_bounds = |text: String| {
+        let lines = text.lines().map(|line| {
+            if line.starts_with("const U = ") {
+                "const U = 0lf;"
+            } else {
+                line
+            }
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let (mut wrong, mut fewer) = (0, 0);
+    for name in [
+        "hard/lit_bright_mirrors.txt",
+        "hard/lit_faint_mirrors.txt",
+        "hard/lit_panes_coplanar.txt",
+        "hard/lit_painting_under_lamp.txt",
+        "hard/lit_projector_tied.txt",
+        "hard/lit_quadric_ties.txt",
+        "hard/lit_spot_45.txt",
+        "hard/lit_tied_lines.txt",
+        "hard/tile_edges.txt",
+    ] {
+        // As it is: at another size rays do not meet borders exactly.
+        let (scene, settings) = scene(name, None);
+        let Some(honest) = doubled(&scene, &settings) else {
+            return;
+        };
+        let bold = doubled_by(&scene, &settings, &without_bounds).unwrap();
+        fewer += honest.left.saturating_sub(bold.left);
+        let (cpu, _) = common::picture(&scene, &common::on(Backend::Cpu));
+        let right = cpu.as_chunks::<3>().0;
+        let is_wrong = |(place, bytes): &&(usize, [u8; 3])| right[*place] != *bytes;
+        assert_eq!(honest.decided.iter().filter(is_wrong).count(), 0, "{name}");
+        let here = bold.decided.iter().filter(is_wrong).count();
+        println!(
+            "{name}: {} left, {} without bounds, {here} wrong",
+            honest.left, bold.left
+        );
+        wrong += here;
+    }
+    assert!(wrong > 0 && fewer > 0, "{wrong} wrong, {fewer} fewer left");
+}
