@@ -277,9 +277,11 @@ fn color_wheel(x_: f32, y_: f32, error: f32) -> Shade {
 }
 
 //#if double
-const HALF_ROOT_3 = 0x1.bb67ae8584caap-1f;
 //#else
 const HALF_ROOT_3 = 0x1.bb67aep-1f;
+//#end
+//#if double
+const HALF_ROOT_3 = 0x1.bb67ae8584caap-1f;
 //#end
 //#end
 //#insert procedural

@@ -21,24 +21,31 @@ pub struct Double {
 /// Pixels of a dispatch that are taken in f64 until it is known whether that is worth its time.
 const TRIED: u32 = 1024;
 
+/// Whether a scene can have this stage: not where its bounds cannot be relied on, where pairs of f64 tell that an object
+/// is never seen and f64 does not, or where objects are so many that pairs have them on demand.
+pub fn can_be(single: &Packed, double: &Packed<F64>) -> bool {
+    double.unprovable.is_none()
+        && single.kinds == double.kinds
+        && single.counts() == double.counts()
+}
+
 impl Double {
-    /// Makes it, from a scene in f64 and the features of the picture's shader, which lists pixels. A scene whose bounds
-    /// cannot be relied on has no such stage.
+    /// Makes it, from a scene in f32 and in f64 and the features of the picture's shader, which lists pixels.
     ///
     /// # Errors
     /// What the device says; there is no such stage then.
     pub fn make(
         &self,
         gpu: &Gpu,
-        packed: &Packed<F64>,
+        (single, double): (&Packed, &Packed<F64>),
         features: FeatureSet,
     ) -> Result<(), GpuError> {
-        if packed.unprovable.is_some() {
+        if !can_be(single, double) {
             return Ok(());
         }
         let features = features.for_the_list();
-        let wgsl = compose(packed, &features, Entry::Listed);
-        self.set(Pipeline::new(gpu, packed, &features, &wgsl)?);
+        let wgsl = compose(double, &features, Entry::Listed);
+        self.set(Pipeline::new(gpu, double, &features, &wgsl)?);
         Ok(())
     }
 

@@ -167,7 +167,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             Here::Opened {
                 device, devices, ..
             } => {
-                let double = device.doubles(rendering.settings, &task.packed);
+                let double = device.doubles(rendering.settings, &task.packed, rendering.pixels());
                 let double = double.then(Arc::<Double>::default);
                 let (gpu, for_thread) = (Arc::clone(device), double.clone());
                 let thread = move || {
@@ -222,11 +222,11 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
 
     /// Has the stage in f64 made, while the device is at work without it.
     fn make_double(&self, device: &Arc<Device>, devices: &Devices, double: Arc<Double>) {
-        let packed = self.rendering.packed_in_f64();
+        let (single, in_f64) = (self.rendering.packed(), self.rendering.packed_in_f64());
         let device = Arc::clone(device);
-        let features = device.features(self.rendering.settings, &self.rendering.packed());
+        let features = device.features(self.rendering.settings, &single, self.rendering.pixels());
         let make = move || {
-            if let Err(error) = double.make(&device.gpu, &packed, features) {
+            if let Err(error) = double.make(&device.gpu, (&single, &in_f64), features) {
                 log::info!("{} makes no pixels in f64: {error}", device.gpu.name);
             }
         };

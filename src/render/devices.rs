@@ -32,6 +32,8 @@ pub(super) struct Device {
 /// Scenes of more objects have no stage in f64: preparing them in pairs of f64 takes longer than it spares, since
 /// little of them is in doubt.
 const MOST_DOUBLED: usize = 4096;
+/// Nor have pictures of fewer pixels: compiling its shader takes longer than the CPU does for their doubts.
+const LEAST_DOUBLED: u64 = 1 << 20;
 
 impl Device {
     fn new(gpu: Arc<Gpu>) -> Arc<Self> {
@@ -42,18 +44,19 @@ impl Device {
         })
     }
 
-    /// Whether it decides in f64 what f32 leaves open of such a picture.
-    pub(super) fn doubles(&self, settings: &Settings, packed: &Packed) -> bool {
+    /// Whether it decides in f64 what f32 leaves open of such a picture, of so many pixels.
+    pub(super) fn doubles(&self, settings: &Settings, packed: &Packed, pixels: u64) -> bool {
         settings.has_gpu_bounds()
+            && pixels >= LEAST_DOUBLED
             && packed.objects.len() <= MOST_DOUBLED
             && self.doubles.get().is_some_and(|doubles| *doubles)
     }
 
     /// What the shader of such a picture needs here.
-    pub(super) fn features(&self, settings: &Settings, packed: &Packed) -> FeatureSet {
+    pub(super) fn features(&self, settings: &Settings, packed: &Packed, pixels: u64) -> FeatureSet {
         let features = FeatureSet::new(packed, settings, self.gpu.lanes);
         let features = features.for_a_file(self.gpu.software);
-        if self.doubles(settings, packed) {
+        if self.doubles(settings, packed, pixels) {
             features.with_a_list()
         } else {
             features
@@ -142,7 +145,13 @@ impl Devices {
 
     /// Compiles the shader of a picture that is to come, for the devices that are open now: those on software too, if
     /// asked for.
-    pub(super) fn compile_ahead(&self, packed: &Packed, settings: &Settings, software: bool) {
+    pub(super) fn compile_ahead(
+        &self,
+        packed: &Packed,
+        settings: &Settings,
+        pixels: u64,
+        software: bool,
+    ) {
         // Where devices are being opened, they are not open yet.
         let Ok(open) = self.open.try_lock().map(|open| open.clone()) else {
             return;
@@ -150,7 +159,7 @@ impl Devices {
         for device in open {
             let gpu = &device.gpu;
             if software || !gpu.software {
-                let features = device.features(settings, packed);
+                let features = device.features(settings, packed, pixels);
                 // If this fails, so will compiling it when it is wanted, and that is told.
                 let _ = device
                     .compiled

@@ -67,6 +67,11 @@ impl<'a> Rendering<'a> {
         }
     }
 
+    /// All pixels of the rows that are rendered.
+    pub(super) fn pixels(&self) -> u64 {
+        u64::from(self.width) * self.rows.len() as u64
+    }
+
     /// Runs on the threads that were asked for.
     pub(super) fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match self.pool {

@@ -67,7 +67,7 @@ impl Rendering<'_> {
             let packed = self.packed();
             if packed.unprovable.is_none() || !self.settings.has_gpu_bounds() {
                 let software = self.settings.backend == Backend::Gpu;
-                devices.compile_ahead(&packed, self.settings, software);
+                devices.compile_ahead(&packed, self.settings, self.pixels(), software);
             }
         }
     }

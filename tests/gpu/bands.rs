@@ -202,7 +202,8 @@ fn verdicts_and_counts_agree() {
                 let count = verdicts.iter().filter(|verdict| **verdict == by).count();
                 assert_eq!(report.decided.count(by), count as u64, "{name}: {by:?}");
             }
-            let by_gpu = report.decided.count(DecidedBy::Gpu);
+            let by_device = [DecidedBy::Gpu, DecidedBy::Double];
+            let by_gpu: u64 = by_device.iter().map(|by| report.decided.count(*by)).sum();
             match report.backend {
                 Backend::Gpu => assert_eq!(report.refined, 93 * 71 - by_gpu),
                 _ => assert_eq!((report.refined, by_gpu), (0, 0)),

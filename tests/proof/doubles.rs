@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use plumb::certify::trust;
 use plumb::gpu::adapters;
 use plumb::gpu::bands;
-use plumb::gpu::double::Double;
+use plumb::gpu::double::{Double, can_be};
 use plumb::gpu::pipeline::Pipeline;
 use plumb::prepare::Prepared;
 use plumb::render::{Backend, Settings};
@@ -51,7 +51,7 @@ fn doubled_by(
     let features = features.for_a_file(gpu.software).with_a_list();
     let prepared = Prepared::new(scene, settings.view());
     let in_f64 = Packed::<F64>::rounded(&prepared, scene, settings);
-    if !features.is_listed() || packed.unprovable.is_some() || in_f64.unprovable.is_some() {
+    if !features.is_listed() || packed.unprovable.is_some() || !can_be(&packed, &in_f64) {
         return None;
     }
     let wgsl = compose(&packed, &features, Entry::Picture);
@@ -136,6 +136,31 @@ fn little_is_left_behind_f64() {
         let listed = all.decided.len() + all.left;
         assert!(all.left * 100 <= left_of_a_hundred * listed, "{name}");
     }
+}
+
+/// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: such a
+/// scene has no stage in f64.
+#[test]
+fn many_objects_have_no_stage() {
+    let mut text = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
+        material m { ambient 3 1 2 }"
+        .to_owned();
+    for i in 0..3000 {
+        let (x, y) = (f64::from(i % 60) / 7.5, f64::from(i / 60) / 8.0);
+        text += &format!("\nsphere s {{ material m center {x} {y} -2 radius 0.05 }}");
+    }
+    let scene = plumb::scene::parse("many", text.as_bytes(), &common::scenes()).unwrap();
+    let settings = common::on(Backend::Gpu);
+    let tracer = plumb::cpu::pixel::ExactTracer::new(&scene, settings.view());
+    let single = Packed::new(&scene, &settings);
+    assert!(single.screen_grid.is_some() && !single.spheres.is_empty());
+    let on_demand = Packed::<F64>::rounded(tracer.pairs(), &scene, &settings);
+    assert!(!can_be(&single, &on_demand));
+    // Prepared as f32's are, they are the same.
+    let prepared = Prepared::new(&scene, settings.view());
+    let whole = Packed::<F64>::rounded(&prepared, &scene, &settings);
+    assert_eq!(single.counts(), whole.counts());
+    assert!(can_be(&single, &whole));
 }
 
 /// Where f64 takes its bounds for nothing, it decides what it must not, and the bytes show it.

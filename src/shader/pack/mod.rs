@@ -342,6 +342,37 @@ impl<F: Format> Packed<F> {
         both.map(F::record).collect()
     }
 
+    /// How many there are of each record, and where lists are divided: what the shaders of two formats have to agree on,
+    /// since both have the features of one.
+    pub fn counts(&self) -> Vec<usize> {
+        let mut counts = vec![
+            self.objects.len(),
+            self.planes.len(),
+            self.polygons.len(),
+            self.grid_polygons,
+            self.spheres.len(),
+            self.sphere_points.len(),
+            self.quadrics.len(),
+            self.bvh.len(),
+            self.tiled_planes.len(),
+            self.pplanes.len(),
+            self.texplanes.len(),
+        ];
+        if let Some(lit) = &self.lit {
+            counts.extend([
+                lit.materials.len(),
+                lit.lights.len(),
+                lit.projectors.len(),
+                lit.planes.len(),
+                lit.loose_planes,
+                lit.third_sides.len(),
+                lit.spheres.len(),
+                lit.in_tree,
+            ]);
+        }
+        counts
+    }
+
     /// How many objects a primary ray can hit.
     pub fn tested(&self) -> usize {
         self.planes.len() + self.polygons.len() + self.spheres.len() + self.quadrics.len()
