@@ -25,7 +25,7 @@ use crate::stopwatch::{Phase, Phases, Stopwatch};
 pub(super) struct Device {
     pub(super) gpu: Arc<Gpu>,
     pub(super) compiled: Compiled,
-    /// Whether it is trusted with f64; asked where it is trusted with certified pixels.
+    /// Whether it is trusted with f64, once that was asked.
     doubles: OnceLock<bool>,
 }
 
@@ -49,7 +49,9 @@ impl Device {
         settings.has_gpu_bounds()
             && pixels >= LEAST_DOUBLED
             && packed.objects.len() <= MOST_DOUBLED
-            && self.doubles.get().is_some_and(|doubles| *doubles)
+            && *self
+                .doubles
+                .get_or_init(|| trust::has_doubles(&self.gpu, settings.cache.as_deref()))
     }
 
     /// What the shader of such a picture needs here.
@@ -236,12 +238,7 @@ fn find(open: &Mutex<Vec<Arc<Device>>>, given: bool, wanted: &Wanted) -> Found {
     watch.lap(Phase::Device);
     let tested = opened.into_iter().map(|device| match device {
         Ok(device) if wanted.certified => {
-            let cache = wanted.cache.as_deref();
-            trust::check(&device.gpu, cache).map(|()| {
-                let doubles = || trust::has_doubles(&device.gpu, cache);
-                device.doubles.get_or_init(doubles);
-                device
-            })
+            trust::check(&device.gpu, wanted.cache.as_deref()).map(|()| device)
         }
         device => device,
     });

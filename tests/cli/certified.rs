@@ -47,7 +47,11 @@ fn the_report_says_what_decided_every_pixel() {
         let phases = seconds["phases"].as_object().unwrap();
         let sum: f64 = phases.values().map(|phase| phase.as_f64().unwrap()).sum();
         let total = seconds["total"].as_f64().unwrap();
-        assert!((sum - total).abs() <= 0.02 * total, "{sum} of {total}");
+        // What is between two readings of the clock is in neither of the phases.
+        assert!(
+            (sum - total).abs() <= 0.02 * total + 1e-4,
+            "{sum} of {total}"
+        );
         let workers = report["workers"].as_array().unwrap();
         let pixels: u64 = workers
             .iter()
