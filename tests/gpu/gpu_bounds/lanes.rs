@@ -15,7 +15,7 @@ use crate::common;
 
 /// Columns and rows of pictures of a sample a pixel and of several: not a multiple of the lanes of any vector.
 const SIZE: [u32; 2] = [93, 61];
-const SMALL: [u32; 2] = [47, 31];
+const SMALL: [u32; 2] = [23, 15];
 
 /// The words of all pixels, with each kind of vectors.
 fn words(
