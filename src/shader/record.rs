@@ -223,7 +223,6 @@ macro_rules! records {
 
         /// The same records with f64 for f32.
         pub(in crate::shader) mod wide {
-            #[allow(unused_imports)]
             use super::*;
 
             $(
