@@ -86,21 +86,21 @@ pub fn revoke(gpu: &Gpu, folder: Option<&Path>) {
     }
 }
 
-/// What is remembered of a device: all that may change how it computes, and which test it passed.
+/// What is remembered of a device that passed the self-test.
 fn note(gpu: &Gpu) -> String {
-    format!(
-        "plumb: this adapter passed the self-test. This file may be deleted.\n{}\ntest {:016x}\n",
-        gpu.identity,
-        selftest::version()
-    )
+    note_of(gpu, "the self-test", selftest::version())
 }
 
 /// The same of its f64.
 fn note_of_doubles(gpu: &Gpu) -> String {
+    note_of(gpu, "the self-test with f64", selftest::double_version())
+}
+
+/// All that may change how a device computes, and which version of which test it passed.
+fn note_of(gpu: &Gpu, test: &str, version: u64) -> String {
     format!(
-        "plumb: this adapter passed the self-test with f64. This file may be deleted.\n{}\ntest {:016x}\n",
-        gpu.identity,
-        selftest::double_version()
+        "plumb: this adapter passed {test}. This file may be deleted.\n{}\ntest {version:016x}\n",
+        gpu.identity
     )
 }
 

@@ -1,8 +1,7 @@
 //! What the self-test asks of a device, check by check.
 
-use std::ops::Range;
-
 use super::exact;
+use super::judging::{Check, Operands};
 
 /// Numbers that stand in the text of the shader, as those of small scenes do.
 pub(super) const LITERALS: [f32; 4] = [
@@ -11,15 +10,6 @@ pub(super) const LITERALS: [f32; 4] = [
     f32::from_bits(0x4040_0003),
     f32::from_bits(0x0080_0001),
 ];
-
-/// A check: which of the words of a pair it looks at, and whether they are right. None where the operands are outside
-/// what the certified path needs.
-pub(super) struct Check {
-    pub(super) name: &'static str,
-    pub(super) asked: &'static str,
-    pub(super) words: Range<usize>,
-    pub(super) judge: fn(Pair, &[u32]) -> Option<bool>,
-}
 
 /// A pair of operands.
 #[derive(Debug, Clone, Copy)]
@@ -44,8 +34,15 @@ impl Pair {
     }
 }
 
+impl Operands for Pair {
+    fn shown(self) -> String {
+        let (x, y) = (self.x(), self.y());
+        format!("x = {x:e} ({:08x}), y = {y:e} ({:08x})", self.a, self.b)
+    }
+}
+
 /// Every check. The words are in the order in which the shader writes them.
-pub(super) const CHECKS: &[Check] = &[
+pub(super) const CHECKS: &[Check<Pair, u32>] = &[
     Check {
         name: "x + y",
         asked: "the nearest",

@@ -3,13 +3,14 @@
 
 mod checks;
 
-use super::{Outcome, WORKGROUP};
+use super::operands::{all_with_all, random};
+use super::{Outcome, WORKGROUP, judging};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::shader::literal::literal_of_f64;
-use checks::{CHECKS, Check};
+use checks::CHECKS;
 
-pub(super) const SHADER: &str = include_str!("../../../shaders/selftest_double.wgsl");
+const SHADER: &str = include_str!("../../../shaders/selftest_double.wgsl");
 
 /// Results of a pair of operands.
 const RESULTS: usize = 27;
@@ -52,19 +53,9 @@ const SPECIAL: [u64; 24] = [
 const RANDOM: usize = 1472;
 
 /// All pairs: always the same, finite, a multiple of 64 of them.
-pub(super) fn operands() -> Vec<[f64; 2]> {
-    let mut pairs = Vec::with_capacity(SPECIAL.len() * SPECIAL.len() + RANDOM);
-    for a in SPECIAL {
-        pairs.extend(SPECIAL.map(|b| [a, b]));
-    }
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut next = || {
-        // Xorshift64*.
-        state ^= state >> 12;
-        state ^= state << 25;
-        state ^= state >> 27;
-        state.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    };
+fn operands() -> Vec<[f64; 2]> {
+    let mut pairs = all_with_all(&SPECIAL);
+    let mut next = random();
     for i in 0..RANDOM {
         let (p, q, r) = (next(), next(), next());
         // Sign and fraction of `bits`, an exponent of `width` values around 0.
@@ -96,15 +87,13 @@ pub(super) fn operands() -> Vec<[f64; 2]> {
     pairs.iter().map(|pair| pair.map(f64::from_bits)).collect()
 }
 
-/// What another version of the test may have otherwise.
-pub(super) fn names_and_operands(hasher: &mut impl std::hash::Hasher) {
-    use std::hash::Hash as _;
-    for check in CHECKS {
-        (check.name, check.asked).hash(hasher);
-    }
-    for pair in operands() {
-        pair.map(f64::to_bits).hash(hasher);
-    }
+/// A number that changes when the test does.
+pub(super) fn version() -> u64 {
+    let bits: Vec<_> = operands()
+        .iter()
+        .map(|pair| pair.map(f64::to_bits))
+        .collect();
+    judging::version(CHECKS, (SHADER, bits))
 }
 
 /// Runs the shader on the device and judges what it wrote. Only for devices that have f64.
@@ -131,32 +120,15 @@ fn compute(gpu: &Gpu, pairs: &[[f64; 2]]) -> Result<Vec<u64>, GpuError> {
 }
 
 /// Compares what a device wrote for these pairs with what it has to be.
-pub(super) fn judge(pairs: &[[f64; 2]], results: &[u64]) -> Vec<Outcome> {
-    let outcome = |check: &Check| {
-        let mut cases = 0;
-        let mut failure = None;
-        for (pair, words) in pairs.iter().zip(results.chunks_exact(RESULTS)) {
-            let words = &words[check.at..];
-            let Some(right) = (check.judge)(*pair, words) else {
-                continue;
-            };
-            cases += 1;
-            if !right && failure.is_none() {
-                let [x, y] = pair;
-                failure = Some(format!("x = {x:e}, y = {y:e} gave {:016x}", words[0]));
-            }
-        }
-        if results.len() != pairs.len() * RESULTS {
-            failure = Some("results are missing".to_owned());
-        }
-        Outcome {
-            check: check.name,
-            asked: check.asked,
-            cases,
-            failure,
-        }
-    };
-    CHECKS.iter().map(outcome).collect()
+fn judge(pairs: &[[f64; 2]], results: &[u64]) -> Vec<Outcome> {
+    judging::judge(CHECKS, pairs, results, RESULTS)
+}
+
+impl judging::Operands for [f64; 2] {
+    fn shown(self) -> String {
+        let [x, y] = self;
+        format!("x = {x:e}, y = {y:e}")
+    }
 }
 
 #[cfg(test)]

@@ -14,9 +14,10 @@ mod checks;
 mod composed;
 mod double;
 mod exact;
+mod judging;
 mod operands;
 
-use checks::{CHECKS, Check, LITERALS, Pair};
+use checks::{CHECKS, LITERALS, Pair};
 use operands::operands;
 
 const SHADER: &str = include_str!("../../../shaders/selftest.wgsl");
@@ -72,66 +73,18 @@ pub fn failures(outcomes: &[Outcome]) -> Option<String> {
 
 /// A number that changes when the self-test does: a device that passed another one is tested again.
 pub fn version() -> u64 {
-    use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-    let mut hasher = DefaultHasher::new();
-    for check in CHECKS {
-        (check.name, check.asked).hash(&mut hasher);
-    }
-    (
-        SHADER,
-        env!("CARGO_PKG_VERSION"),
-        composed::SCENE,
-        operands(),
-    )
-        .hash(&mut hasher);
-    hasher.finish()
+    judging::version(CHECKS, (SHADER, composed::SCENE, operands()))
 }
 
 /// The same for the self-test with f64.
 pub fn double_version() -> u64 {
-    use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-    let mut hasher = DefaultHasher::new();
-    (double::SHADER, env!("CARGO_PKG_VERSION")).hash(&mut hasher);
-    double::names_and_operands(&mut hasher);
-    hasher.finish()
+    double::version()
 }
 
 /// Compares the words that a device wrote for these pairs with what they have to be.
 fn judge(pairs: &[[u32; 2]], results: &[u32]) -> Vec<Outcome> {
-    let outcome = |check: &Check| {
-        let mut cases = 0;
-        let mut failure = None;
-        for (pair, words) in pairs.iter().zip(results.chunks_exact(RESULTS)) {
-            let pair = Pair {
-                a: pair[0],
-                b: pair[1],
-            };
-            let words = &words[check.words.clone()];
-            let Some(right) = (check.judge)(pair, words) else {
-                continue;
-            };
-            cases += 1;
-            if !right && failure.is_none() {
-                failure = Some(format!(
-                    "x = {:e} ({:08x}), y = {:e} ({:08x}) gave {words:08x?}",
-                    pair.x(),
-                    pair.a,
-                    pair.y(),
-                    pair.b
-                ));
-            }
-        }
-        if results.len() != RESULTS * pairs.len() {
-            failure = Some("results are missing".into());
-        }
-        Outcome {
-            check: check.name,
-            asked: check.asked,
-            cases,
-            failure,
-        }
-    };
-    CHECKS.iter().map(outcome).collect()
+    let pairs: Vec<Pair> = pairs.iter().map(|&[a, b]| Pair { a, b }).collect();
+    judging::judge(CHECKS, &pairs, results, RESULTS)
 }
 
 /// The text of the shader.

@@ -24,18 +24,9 @@ const RANDOM: usize = 2496;
 
 /// Bit patterns of all pairs: always the same, finite, a multiple of 64 of them.
 pub(super) fn operands() -> Vec<[u32; 2]> {
-    let mut pairs = Vec::with_capacity(SPECIAL.len() * SPECIAL.len() + RANDOM);
-    for a in SPECIAL {
-        pairs.extend(SPECIAL.map(|b| [a, b]));
-    }
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut next = || {
-        // Xorshift64*.
-        state ^= state >> 12;
-        state ^= state << 25;
-        state ^= state >> 27;
-        (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) as u32
-    };
+    let mut pairs = all_with_all(&SPECIAL);
+    let mut random = random();
+    let mut next = || (random() >> 32) as u32;
     for i in 0..RANDOM {
         let (p, q, r) = (next(), next(), next());
         // Sign and fraction of `bits`, an exponent of `width` values around 0.
@@ -65,4 +56,21 @@ pub(super) fn operands() -> Vec<[u32; 2]> {
         });
     }
     pairs
+}
+
+/// Every number with every one.
+pub(super) fn all_with_all<T: Copy>(numbers: &[T]) -> Vec<[T; 2]> {
+    let with_all = |a: &T| numbers.iter().map(|b| [*a, *b]).collect::<Vec<_>>();
+    numbers.iter().flat_map(with_all).collect()
+}
+
+/// Random bits, always the same: Xorshift64*.
+pub(super) fn random() -> impl FnMut() -> u64 {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    move || {
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        state.wrapping_mul(0x2545_f491_4f6c_dd1d)
+    }
 }

@@ -1,17 +1,9 @@
 //! What the self-test with f64 asks of a device, check by check.
 
 use super::LITERALS;
+use crate::gpu::selftest::judging::Check;
 
 const U: f64 = 1.0 / (1_u64 << 53) as f64;
-
-/// A check: which results of a pair it looks at, and whether they are right. None where the operands are outside what
-/// the stage needs.
-pub(super) struct Check {
-    pub(super) name: &'static str,
-    pub(super) asked: &'static str,
-    pub(super) at: usize,
-    pub(super) judge: fn([f64; 2], &[u64]) -> Option<bool>,
-}
 
 /// Whether a number is 0, or of a size at which no product of a few leaves f64's range.
 fn ordinary(value: f64) -> bool {
@@ -65,29 +57,29 @@ fn inverse_root(x: f64, result: u64) -> Option<bool> {
     Some(r.is_finite() && off.abs() <= 3.0 * U)
 }
 
-pub(super) const CHECKS: &[Check] = &[
+pub(super) const CHECKS: &[Check<[f64; 2], u64>] = &[
     Check {
         name: "f64: x + y",
         asked: "the nearest",
-        at: 0,
+        words: 0..1,
         judge: |[x, y], w| nearest(x + y, w[0]),
     },
     Check {
         name: "f64: x - y",
         asked: "the nearest",
-        at: 1,
+        words: 1..2,
         judge: |[x, y], w| nearest(x - y, w[0]),
     },
     Check {
         name: "f64: x * y",
         asked: "the nearest",
-        at: 2,
+        words: 2..3,
         judge: |[x, y], w| nearest(x * y, w[0]),
     },
     Check {
         name: "f64: x / y",
         asked: "4 u, u = 2^-53",
-        at: 3,
+        words: 3..4,
         judge: |[x, y], w| {
             if y == 0.0 {
                 None
@@ -99,31 +91,31 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "f64: sqrt",
         asked: "2 u",
-        at: 4,
+        words: 4..5,
         judge: |[x, _], w| near(x.abs().sqrt(), w[0], 2.0),
     },
     Check {
         name: "f64: 1 / sqrt",
         asked: "3 u",
-        at: 5,
+        words: 5..6,
         judge: |[x, _], w| inverse_root(x, w[0]),
     },
     Check {
         name: "f64: floor",
         asked: "exact",
-        at: 6,
+        words: 6..7,
         judge: |[x, _], w| nearest(x.floor(), w[0]),
     },
     Check {
         name: "f64: round",
         asked: "exact, halves to even",
-        at: 7,
+        words: 7..8,
         judge: |[x, _], w| nearest(x.round_ties_even(), w[0]),
     },
     Check {
         name: "f64(i32), f64(u32)",
         asked: "exact",
-        at: 8,
+        words: 8..10,
         judge: |[x, _], w| {
             let low = x.to_bits() as u32;
             let right = [f64::from(low as i32), f64::from(low)];
@@ -133,7 +125,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "f64: min, max, abs, select",
         asked: "exact",
-        at: 10,
+        words: 10..14,
         judge: |[x, y], w| {
             let right = [x.min(y), x.max(y), x.abs(), if x > y { y } else { x }];
             Some(right.iter().zip(w).all(|(r, w)| f64::from_bits(*w) == *r))
@@ -142,7 +134,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "f64: comparisons",
         asked: "exact",
-        at: 14,
+        words: 14..15,
         judge: |[x, y], w| {
             let holds = [x > y, x >= y, x.abs() > y.abs(), x == y];
             let bits = holds.iter().rev();
@@ -153,7 +145,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "i32(f64), u32(f64)",
         asked: "exact, towards 0",
-        at: 15,
+        words: 15..16,
         judge: |[x, _], w| {
             let right = u64::from(x as i32 as u32) | u64::from(x.abs() as u32) << 32;
             (x.abs() < f64::from(i32::MAX)).then_some(w[0] == right)
@@ -162,7 +154,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "f32(f64)",
         asked: "one of the two nearest",
-        at: 16,
+        words: 16..17,
         judge: |[x, _], w| {
             let found = f32::from_bits(w[0] as u32);
             let (below, above) = (found.next_down(), found.next_up());
@@ -173,7 +165,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "f64(f32)",
         asked: "exact",
-        at: 17,
+        words: 17..18,
         judge: |[x, _], w| {
             let single = f32::from_bits(x.to_bits() as u32);
             (single == 0.0 || single.is_normal()).then(|| f64::from_bits(w[0]) == f64::from(single))
@@ -182,43 +174,43 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         name: "f64: barrier",
         asked: "the same bits",
-        at: 18,
+        words: 18..19,
         judge: |[x, _], w| Some(w[0] == x.to_bits()),
     },
     Check {
         name: "f64: two_sum behind the barrier",
         asked: "sum + tail exact",
-        at: 19,
+        words: 19..21,
         judge: |[x, y], w| parts(two_sum(x, y), w),
     },
     Check {
         name: "f64: two_prod behind the barrier",
         asked: "product + tail exact",
-        at: 21,
+        words: 21..23,
         judge: |[x, y], w| parts(two_product(x, y), w),
     },
     Check {
         name: "f64: x * literal",
         asked: "the nearest",
-        at: 23,
+        words: 23..24,
         judge: |[x, _], w| nearest(x * LITERALS[0], w[0]),
     },
     Check {
         name: "f64: x + literal",
         asked: "the nearest",
-        at: 24,
+        words: 24..25,
         judge: |[x, _], w| nearest(x + LITERALS[1], w[0]),
     },
     Check {
         name: "f64: literals",
         asked: "the same bits",
-        at: 25,
+        words: 25..26,
         judge: |_, w| Some(w[0] == LITERALS[1].to_bits()),
     },
     Check {
         name: "f64: dot",
         asked: "3 u of the sum of the terms' sizes",
-        at: 26,
+        words: 26..27,
         judge: |[x, y], w| {
             let terms = [[x, y], LITERALS, [y, x]].map(|[a, b]| two_product(a, b));
             let sizes: f64 = terms.iter().map(|[high, _]| high.abs()).sum();
