@@ -13,7 +13,7 @@ use crate::shader::pack::Packed;
 
 /// The stage, whether it is there yet or not.
 #[derive(Debug, Default)]
-pub struct Double {
+pub struct DoubleStage {
     pipeline: OnceLock<Pipeline>,
     worth: OnceLock<bool>,
 }
@@ -29,7 +29,7 @@ pub fn can_be(single: &Packed, double: &Packed<F64>) -> bool {
         && single.counts() == double.counts()
 }
 
-impl Double {
+impl DoubleStage {
     /// Makes it, from a scene in f32 and in f64 and the features of the picture's shader, which lists pixels.
     ///
     /// # Errors

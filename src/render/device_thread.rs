@@ -17,7 +17,7 @@ use crate::gpu::GpuError;
 use crate::gpu::bands::{self, Order, Rendered};
 use crate::gpu::canvas::Canvas;
 use crate::gpu::device::Gpu;
-use crate::gpu::double::Double;
+use crate::gpu::double::DoubleStage;
 use crate::gpu::pipeline::{Compiled, Pipeline, SceneBuffers};
 use crate::jitter::Jitter;
 use crate::settings::Settings;
@@ -69,7 +69,7 @@ pub(super) struct Use<'a> {
     pub(super) moving: bool,
     pub(super) canvas: Option<&'a Canvas>,
     /// What decides in f64 what f32 leaves open, if anything is to.
-    pub(super) double: Option<&'a Double>,
+    pub(super) double: Option<&'a DoubleStage>,
     pub(super) dispatch_seconds: f64,
     pub(super) stop: &'a StopRequested<'a>,
 }

@@ -22,7 +22,7 @@ use crate::frame::Halt;
 use crate::gpu::GpuError;
 use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::device::Gpu;
-use crate::gpu::double::Double;
+use crate::gpu::double::DoubleStage;
 use crate::shader::constants::LOOP_ITERATIONS;
 use crate::stopwatch::Phases;
 
@@ -168,7 +168,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 device, devices, ..
             } => {
                 let double = device.doubles(rendering.settings, &task.packed, rendering.pixels());
-                let double = double.then(Arc::<Double>::default);
+                let double = double.then(Arc::<DoubleStage>::default);
                 let (gpu, for_thread) = (Arc::clone(device), double.clone());
                 let thread = move || {
                     let used = Use {
@@ -221,7 +221,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
     }
 
     /// Has the stage in f64 made, while the device is at work without it.
-    fn make_double(&self, device: &Arc<Device>, devices: &Devices, double: Arc<Double>) {
+    fn make_double(&self, device: &Arc<Device>, devices: &Devices, double: Arc<DoubleStage>) {
         let (single, in_f64) = (self.rendering.packed(), self.rendering.packed_in_f64());
         let device = Arc::clone(device);
         let features = device.features(self.rendering.settings, &single, self.rendering.pixels());
@@ -241,7 +241,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
         orders: Sender<Range<u32>>,
         heights: &Heights,
         news: &Receiver<News>,
-        double: Option<&Double>,
+        double: Option<&DoubleStage>,
     ) -> Gone {
         let bag = &self.rendering.bag;
         let stop = self.rendering.stop;
@@ -333,7 +333,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
 
     /// Leaves pixels to the CPU where that decides them in less time: there are GPUs on which f64 takes 64 times what
     /// f32 takes. What the CPU would take is what it takes for a pixel that it checks.
-    fn weigh(&self, double: Option<&Double>, checked: u64) {
+    fn weigh(&self, double: Option<&DoubleStage>, checked: u64) {
         let a_pixel = |seconds: f64, pixels: u64| seconds / pixels.max(1) as f64;
         let device = a_pixel(self.beside.kernel_f64, self.listed);
         let cpu = a_pixel(self.beside.spot_checks, checked);

@@ -6,9 +6,10 @@
 
 use super::partial::Layout;
 use super::plan::Rectangle;
+use crate::shader::feature_set::LISTED_WORDS;
 
 /// Words of a record: place, and pixel.
-const WORDS: usize = 2;
+const WORDS: usize = LISTED_WORDS as usize;
 
 fn word(bytes: &[u8; 4]) -> u32 {
     u32::from_le_bytes(*bytes)
@@ -78,7 +79,7 @@ mod tests {
             pixels: Pixels::Words,
             across: 1,
             offsets: 0,
-            record_words: WORDS as u32,
+            record_words: LISTED_WORDS,
             listed: true,
         };
         Layout::new(&form, pixels)

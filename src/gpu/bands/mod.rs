@@ -13,7 +13,7 @@ use std::ops::{ControlFlow, Range};
 use super::GpuError;
 use super::canvas::Canvas;
 use super::device::Gpu;
-use super::double::Double;
+use super::double::DoubleStage;
 use super::pipeline::Pipeline;
 use crate::frame::StopRequested;
 use crate::jitter::Jitter;
@@ -55,7 +55,7 @@ pub struct Frame<'a> {
     /// About how many seconds a dispatch is to take.
     pub dispatch_seconds: f64,
     /// What decides in f64 what f32 leaves open, if the pipeline lists it.
-    pub double: Option<&'a Double>,
+    pub double: Option<&'a DoubleStage>,
     /// Where the pixels are shown, on the GPU.
     pub canvas: Option<&'a Canvas>,
 }

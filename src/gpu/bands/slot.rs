@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::GpuError;
 use super::super::device::Gpu;
-use super::super::double::Double;
+use super::super::double::DoubleStage;
 use super::super::pipeline::Pipeline;
 use super::assembly::Assembly;
 use super::buffers::{BufferPool, PixelBuffers};
@@ -163,7 +163,7 @@ impl Slot {
         let form = &pipeline.form;
         let pitch = columns.next_multiple_of(form.group());
         let mut layout = partial::Layout::new(form, u64::from(pitch) * u64::from(rows));
-        let double = frame.double.and_then(Double::pipeline);
+        let double = frame.double.and_then(DoubleStage::pipeline);
         if let Some((_, most)) = double {
             layout.room = layout.room.min(most);
         }
