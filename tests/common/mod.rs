@@ -4,14 +4,19 @@
 
 pub(crate) mod drivers;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use glam::DVec3;
 use plumb::certify::lanes::Lanes;
+use plumb::gpu::bands::{Frame, Rendered, from_the_top, run};
+use plumb::gpu::device::Gpu;
+use plumb::gpu::pipeline::Pipeline;
 use plumb::jitter::Jitter;
 use plumb::render::{Backend, Devices, Report, Settings, render_with};
 use plumb::scene::{Beam, Light, Scene, load};
+use plumb::stopwatch::Stopwatch;
 
 /// The folder `scenes/`.
 pub(crate) fn scenes() -> PathBuf {
@@ -56,6 +61,22 @@ pub(crate) fn picture(scene: &Scene, settings: &Settings) -> (Vec<u8>, Report) {
     })
     .unwrap_or_else(|error| panic!("{error}"));
     (rgb, report)
+}
+
+/// Renders a frame by itself, and hands its bands on from the top.
+pub(crate) fn bands_of(
+    gpu: &Gpu,
+    pipeline: &Pipeline,
+    frame: &Frame<'_>,
+    mut take: impl FnMut(Rendered),
+) {
+    let hand_on = &mut |rendered| {
+        take(rendered);
+        ControlFlow::Continue(())
+    };
+    let rows = &mut from_the_top(frame.rows.clone());
+    let watch = &mut Stopwatch::start();
+    run(gpu, pipeline, frame, rows, &|| false, watch, hand_on).unwrap();
 }
 
 /// The words of a row that lanes make: bytes where they are sure.

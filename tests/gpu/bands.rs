@@ -1,7 +1,7 @@
 //! How a picture is cut into pieces changes no byte of it: bands of different heights, rows rendered alone, one thread
 //! or many, the CPU or the GPU. Needs an adapter, and fails without one.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 
 use plumb::certify::DecidedBy;
 use plumb::gpu::pipeline::Pipeline;
@@ -14,7 +14,6 @@ use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::form::Pixels;
 use plumb::shader::pack::Packed;
-use plumb::stopwatch::Stopwatch;
 
 use crate::common;
 
@@ -238,22 +237,12 @@ fn stored(scene: &Scene, settings: &Settings, for_a_file: bool) -> Vec<(Vec<u8>,
         canvas: None,
     };
     let mut stored = Vec::new();
-    bands::run(
-        &gpu,
-        &pipeline,
-        &frame,
-        &mut bands::from_the_top(0..height),
-        &|| false,
-        &mut Stopwatch::start(),
-        &mut |rendered| {
-            let parts = rendered.doubtful.iter();
-            let parts = parts.filter_map(|place| rendered.partials.get(*place));
-            let known = parts.map(|part| part.samples() as usize).sum();
-            stored.push((rendered.band.rgb, rendered.doubtful, known));
-            ControlFlow::Continue(())
-        },
-    )
-    .unwrap();
+    common::bands_of(&gpu, &pipeline, &frame, |rendered| {
+        let parts = rendered.doubtful.iter();
+        let parts = parts.filter_map(|place| rendered.partials.get(*place));
+        let known = parts.map(|part| part.samples() as usize).sum();
+        stored.push((rendered.band.rgb, rendered.doubtful, known));
+    });
     stored
 }
 

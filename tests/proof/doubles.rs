@@ -2,12 +2,10 @@
 //! oracle with all others (`certified`, `random_scenes`); here is how they come about, what of them is left, and that a
 //! bound that is missing is noticed.
 
-use std::ops::ControlFlow;
-
 use plumb::certify::trust;
 use plumb::gpu::adapters;
 use plumb::gpu::bands;
-use plumb::gpu::double::{Double, can_be};
+use plumb::gpu::double::{DoubleStage, can_be};
 use plumb::gpu::pipeline::Pipeline;
 use plumb::prepare::Prepared;
 use plumb::render::{Backend, Settings};
@@ -16,7 +14,6 @@ use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
 use plumb::shader::format::Double as F64;
 use plumb::shader::pack::Packed;
-use plumb::stopwatch::Stopwatch;
 
 use crate::common;
 
@@ -56,7 +53,7 @@ fn doubled_by(
     }
     let wgsl = compose(&packed, &features, Entry::Picture);
     let pipeline = Pipeline::new(&gpu, &packed, &features, &wgsl).unwrap();
-    let double = Double::default();
+    let double = DoubleStage::default();
     let listed = features.for_the_list();
     let text = change(compose(&in_f64, &listed, Entry::Listed));
     double.set(Pipeline::new(&gpu, &in_f64, &listed, &text).unwrap());
@@ -73,24 +70,14 @@ fn doubled_by(
         canvas: None,
     };
     let mut all = Doubled::default();
-    bands::run(
-        &gpu,
-        &pipeline,
-        &frame,
-        &mut bands::from_the_top(0..height),
-        &|| false,
-        &mut Stopwatch::start(),
-        &mut |rendered| {
-            let first = ((height - rendered.band.rows.end) * width) as usize;
-            let rgb = rendered.band.rgb.as_chunks().0;
-            let decided = rendered.doubled.iter().map(|place| *place as usize);
-            all.decided
-                .extend(decided.map(|place| (first + place, rgb[place])));
-            all.left += rendered.doubtful.len();
-            ControlFlow::Continue(())
-        },
-    )
-    .unwrap();
+    common::bands_of(&gpu, &pipeline, &frame, |rendered| {
+        let first = ((height - rendered.band.rows.end) * width) as usize;
+        let rgb = rendered.band.rgb.as_chunks().0;
+        let decided = rendered.doubled.iter().map(|place| *place as usize);
+        all.decided
+            .extend(decided.map(|place| (first + place, rgb[place])));
+        all.left += rendered.doubtful.len();
+    });
     Some(all)
 }
 
