@@ -172,14 +172,19 @@ fn sphere_hits_from(sphere: WorldSphere, ray: SecondaryRay, range: Range) -> Int
 // H − C over the radius, where a ray from anywhere meets the sphere; in the fourth component the bound of its error.
 fn sphere_normal_from(sphere: WorldSphere, ray: SecondaryRay) -> vec4f {
     let approach = closest_approach(sphere.center, sphere.radius, sphere.size, ray);
-    let disc = barrier1(max(sphere.radius * sphere.radius - approach.apart, TINY_SQUARE));
-    let inverse_root = inverseSqrt(disc);
-    let root = disc * inverse_root;
-    let normal = barrier((approach.perpendicular + root * ray.dir) * -sphere.inverse_radius);
+    let disc = sphere.radius * sphere.radius - approach.apart;
 //#if certified
     let disc_error = approach.off * (SQUARE_SLOPE * sqrt(approach.apart) + approach.off)
         + DISC_ROUNDINGS * U * sphere.radius * sphere.radius;
-    let reach_error = root_error(disc, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
+    let least = barrier1(max(disc, disc_error));
+//#else
+    let least = max(disc, TINY_SQUARE);
+//#end
+    let inverse_root = inverseSqrt(least);
+    let root = least * inverse_root;
+    let normal = barrier((approach.perpendicular + root * ray.dir) * -sphere.inverse_radius);
+//#if certified
+    let reach_error = root_error(least, disc_error, inverse_root) + ROOT_ROUNDINGS * U * root;
     let error = SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);
     return unit_normal(normal, error * sphere.inverse_radius + NORMAL_ROUNDINGS * U);
 //#else

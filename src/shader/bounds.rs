@@ -155,9 +155,9 @@ named! {
     /// Roundings of the distance of two unit vectors, for a unit of it.
     APART_ROUNDINGS = 14.0, at least 13.5;
     /// Roundings of a power, for a unit of its logarithm to base 2.
-    LOG_ROUNDINGS = 19.5, at least 19.0;
+    LOG_ROUNDINGS = 16.5, at least 16.0;
     /// The same, whatever its logarithm is; and those of the products that make a glint of it.
-    POWER_ROUNDINGS = 25.0, at least 24.0;
+    POWER_ROUNDINGS = 25.0, at least 24.6;
     /// Roundings of a sum of colours.
     SUM_ROUNDINGS = 3.0, at least 3.0;
     /// Roundings of the share of a colour that a ray brings.

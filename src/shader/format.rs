@@ -39,7 +39,7 @@ pub trait Format: Debug + Clone + Copy + PartialEq + Send + Sync + 'static {
 
 /// A number that knows how far it is from an f64.
 pub trait Known: Real {
-    /// The f64 nearest to what is known of the number.
+    /// The f64 nearest to what is known of the number; no number where nothing is.
     fn nearest(self) -> f64;
 
     /// How far the number may be from that, but for its rounding to f64.
@@ -61,7 +61,11 @@ impl Known for Bounded {
 impl Known for Pair {
     #[inline(always)]
     fn nearest(self) -> f64 {
-        self.high
+        if self.error.is_finite() {
+            self.high
+        } else {
+            f64::NAN
+        }
     }
 
     #[inline(always)]

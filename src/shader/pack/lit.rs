@@ -1,5 +1,6 @@
 //! What a lit scene needs beside: materials, lights, and every object for rays from anywhere.
 
+use super::numbers::larger;
 use super::{Packed, factor, factors, nearest};
 use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
@@ -255,7 +256,7 @@ struct Bounds<F: Format> {
 /// The end of a plane; a triangle's third side is put among the others.
 fn bounds<F: Format>(extent: &Extent<F::Number>, third_sides: &mut Vec<[f64; 4]>) -> Bounds<F> {
     let (none, zero) = (F::Number::zero(), V3::exact(glam::DVec3::ZERO));
-    let larger_bound = |values: [F::Number; 2]| upper_bound(values[0]).max(upper_bound(values[1]));
+    let larger_bound = |values: [F::Number; 2]| larger(values.map(upper_bound));
     match extent {
         Extent::Unbounded => Bounds {
             bounded: 0,
@@ -290,7 +291,7 @@ fn bounds<F: Format>(extent: &Extent<F::Number>, third_sides: &mut Vec<[f64; 4]>
                 lengths: [F::Number::exact(LARGEST); 2],
                 // No record has the third one, whose range would be looked at.
                 most: if origin <= LARGEST {
-                    larger_bound([first.1, second.1]).max(origin)
+                    larger([larger_bound([first.1, second.1]), origin])
                 } else {
                     f64::INFINITY
                 },

@@ -63,7 +63,7 @@ impl<F: Format> Packed<F> {
         let camera = F::wide(&self.camera.numbers);
         let far = f64::from(self.camera.condition) <= MOST_CONDITION
             && camera.fits()
-            && camera.step.iter().all(|s| *s < 1024.0)
+            && { camera.step }.iter().all(|s| *s < 1024.0)
             && camera.gain >= 1.0 / LARGEST
             && f64::from(self.dark) > 2.0_f64.powi(-60);
         if !far {

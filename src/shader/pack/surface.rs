@@ -1,5 +1,6 @@
 //! The records of what modulates an object's material: tiles, procedural planes, textures.
 
+use super::numbers::larger;
 use super::{factors, nearest};
 use crate::prepare::Prepared;
 use crate::prepare::surface::{Pplane, Textured, Tiled};
@@ -53,7 +54,7 @@ pub(super) fn tiled_plane<F: Format>(
 
 pub(super) fn procedural_plane<F: Format>(pplane: &Pplane<F::Number>) -> ProceduralPlane {
     let [x, y] = pplane.from_point;
-    let offset = upper_bound(x.offset).max(upper_bound(y.offset));
+    let offset = larger([x.offset, y.offset].map(upper_bound));
     ProceduralPlane {
         per_unit: pplane.index.map(|i| i.per_unit.nearest()),
         index_error: pplane
