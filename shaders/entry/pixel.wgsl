@@ -11,6 +11,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ray = camera_getdir(pixel);
 //#end
     let traced = ray_trace(ray);
-    pixels[0] = vec4u(bitcast<vec3u>(traced.color), camera_setpix(traced.color, traced.error) | traced.verdict);
+    let word = camera_setpix(traced.color, traced.error) | traced.verdict;
+//#if double
+    // Lower halves, then higher ones.
+    let color = bitcast<vec3<u64>>(traced.color);
+    let error = bitcast<vec3<u64>>(traced.error);
+    pixels[0] = vec4u(vec3u(color), word);
+    pixels[1] = vec4u(vec3u(error), 0u);
+    pixels[2] = vec4u(vec3u(color >> vec3u(32u)), 0u);
+    pixels[3] = vec4u(vec3u(error >> vec3u(32u)), 0u);
+//#else
+    pixels[0] = vec4u(bitcast<vec3u>(traced.color), word);
     pixels[1] = vec4u(bitcast<vec3u>(traced.error), 0u);
+//#end
 }

@@ -1,21 +1,20 @@
 //! Pixels decided on the CPU, on all cores: those that the GPU is not sure of, or whole bands.
 
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::time::Duration;
 
 use rayon::prelude::*;
 
+use super::cascade::{Cascade, Decides, Effort, Open};
 use super::first_halt::FirstHalt;
 use super::{Decided, DecidedBy, Tally};
 use crate::certify::lanes::mean::Means;
 use crate::certify::lanes::{LANES, Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
-use crate::cpu::trace::Limits;
-use crate::frame::{Band, Halt, Part, StopRequested, spare};
+use crate::frame::{Band, Halt, StopRequested, spare};
 use crate::gpu::bands::Partials;
-use crate::jitter::{Jitter, Sampling};
-use crate::prepare::ViewParameters;
+use crate::jitter::Jitter;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -29,9 +28,7 @@ const FEW: usize = 128;
 
 /// What it takes to trace a pixel of a scene on the CPU.
 pub struct PixelDecider<'a> {
-    scene: &'a Scene,
-    view: ViewParameters,
-    limits: Limits,
+    cascade: Cascade<'a>,
     jitter: &'a Jitter,
     width: usize,
     /// Whether the values before quantising are wanted, to the last bit of f32.
@@ -39,22 +36,18 @@ pub struct PixelDecider<'a> {
     /// Whether bands tell what decided each pixel.
     verdicts: bool,
     stop: &'a StopRequested<'a>,
-    exact_tracer: OnceLock<ExactTracer<'a>>,
 }
 
 impl<'a> PixelDecider<'a> {
     /// For the scene's picture as the settings ask for it, whose samples are spread by `jitter`.
     pub fn new(scene: &'a Scene, settings: &Settings, jitter: &'a Jitter) -> Self {
         Self {
-            scene,
-            view: settings.view(),
-            limits: settings.sample_limits(),
+            cascade: Cascade::new(scene, settings),
             jitter,
             width: scene.camera.pixeldim[0] as usize,
             values: settings.values,
             verdicts: settings.verdicts,
             stop: &|| false,
-            exact_tracer: OnceLock::new(),
         }
     }
 
@@ -67,17 +60,15 @@ impl<'a> PixelDecider<'a> {
     /// Has the scene prepared already.
     #[must_use]
     pub fn prepared(self, exact_tracer: ExactTracer<'a>) -> Self {
-        let exact_tracer = exact_tracer.with_values(self.values);
         Self {
-            exact_tracer: exact_tracer.into(),
+            cascade: self.cascade.prepared(exact_tracer),
             ..self
         }
     }
 
     /// Prepares the scene, if that was not done yet.
     pub fn exact_tracer(&self) -> &ExactTracer<'a> {
-        self.exact_tracer
-            .get_or_init(|| ExactTracer::new(self.scene, self.view).with_values(self.values))
+        self.cascade.exact_tracer()
     }
 
     /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is
@@ -88,40 +79,41 @@ impl<'a> PixelDecider<'a> {
         top: u32,
         places: &[u32],
         known: &Partials,
+        decides: Decides,
         unwanted: &StopRequested<'_>,
     ) -> Result<(Vec<Decided>, Tally), Halt> {
         let width = self.width as u32;
-        // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
-        let rows = places.chunk_by(|a, b| a / width == b / width);
-        let row = |row: &[u32]| {
-            let y = top - row[0] / width;
-            (y, self.jitter.row(y).map(Arc::new))
+        let piece = |offsets: Option<&[[f64; 2]]>, places: &[u32]| {
+            self.piece(top, offsets, places, (known, decides))
         };
+        // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
+        let rows = places.chunk_by(|a, b| self.cascade.takes_any_rows() || a / width == b / width);
+        let row = |row: &[u32]| self.jitter.row(top - row[0] / width).map(Arc::new);
         let first = FirstHalt::default();
         let decided: Vec<(Vec<Decided>, Tally)> = if places.len() <= FEW {
             rows.map(|places| {
-                let (y, offsets) = row(places);
+                let offsets = row(places);
                 if unwanted() {
                     return Err(Halt::Stopped);
                 }
-                self.piece(y, offsets.as_deref().map(Vec::as_slice), places, known)
+                piece(offsets.as_deref().map(Vec::as_slice), places)
             })
             .collect::<Result<_, _>>()?
         } else {
             rows.collect::<Vec<_>>()
                 .into_par_iter()
                 .flat_map(|places| {
-                    let (y, offsets) = row(places);
+                    let offsets = row(places);
                     places
                         .par_chunks(PIECE)
-                        .map(move |piece| (y, offsets.clone(), piece))
+                        .map(move |piece| (offsets.clone(), piece))
                 })
-                .map(|(y, offsets, piece)| {
-                    first.unless_later(piece[0] as usize, || {
+                .map(|(offsets, places)| {
+                    first.unless_later(places[0] as usize, || {
                         if unwanted() {
                             return Err(Halt::Stopped);
                         }
-                        self.piece(y, offsets.as_deref().map(Vec::as_slice), piece, known)
+                        piece(offsets.as_deref().map(Vec::as_slice), places)
                     })
                 })
                 .collect()
@@ -136,30 +128,35 @@ impl<'a> PixelDecider<'a> {
         Ok((all, tally))
     }
 
-    /// Decides pixels of row `y`, whose samples have these offsets.
+    /// Decides pixels of one row, whose samples have these offsets, or of any rows where they have none.
     fn piece(
         &self,
-        y: u32,
+        top: u32,
         offsets: Option<&[[f64; 2]]>,
         places: &[u32],
-        known: &Partials,
+        (known, decides): (&Partials, Decides),
     ) -> Result<(Vec<Decided>, Tally), Halt> {
         if (self.stop)() {
             return Err(Halt::Stopped);
         }
+        let width = self.width as u32;
+        let open = |place: &u32| {
+            let at = [place % width, top - place / width];
+            Open {
+                at,
+                sampling: self.jitter.pixel(offsets, self.width, at[0] as usize),
+                part: known.get(*place),
+            }
+        };
+        let open: Vec<_> = places.iter().map(open).collect();
         let mut tally = Tally::default();
-        let mut all = Vec::with_capacity(places.len());
-        let mut before = Instant::now();
-        for place in places {
-            let x = place % self.width as u32;
-            let sampling = self.jitter.pixel(offsets, self.width, x as usize);
-            let (decided, samples) = self.decide(sampling, [x, y], known.get(*place))?;
-            let after = Instant::now();
-            tally.decided(decided.by, [x, y], samples, after - before);
-            before = after;
-            all.push(decided);
-        }
-        Ok((all, tally))
+        let mut all = vec![None; places.len()];
+        self.cascade
+            .decide(&open, decides, &mut |i, decided, effort| {
+                tally.decided(decided.by, open[i].at, effort.samples, effort.took);
+                all[i] = Some(decided);
+            })?;
+        Ok((all.into_iter().flatten().collect(), tally))
     }
 
     /// Traces a whole band; with `lanes`, many pixels at once as far as those are sure. Gives up where `unwanted` says
@@ -273,50 +270,39 @@ impl<'a> PixelDecider<'a> {
                     lanes.sampled(at, offsets, &mut words[group.clone()], means);
                 }
             }
+            let mut open = Vec::new();
             for i in group {
-                let x = first + i;
-                let pixel = &mut bytes[3 * i..][..3];
-                let mut by = DecidedBy::Single;
                 if words[i] < OPEN {
                     let [red, green, blue, _] = words[i].to_le_bytes();
-                    pixel.copy_from_slice(&[red, green, blue]);
+                    bytes[3 * i..][..3].copy_from_slice(&[red, green, blue]);
                     quick += 1;
-                } else {
-                    let sampling = self.jitter.pixel(offsets, self.width, x);
-                    let part = means.as_ref().and_then(|means| means.part(i - start));
-                    let (decided, traced) = self.decide(sampling, [x as u32, y], part)?;
-                    by = decided.by;
-                    tally.decided(by, [x as u32, y], traced, Duration::ZERO);
-                    pixel.copy_from_slice(&decided.bytes);
-                    if let Some(value) = values.get_mut(i) {
-                        *value = decided.value;
+                    if let Some(verdict) = verdicts.get_mut(i) {
+                        *verdict = DecidedBy::Single;
                     }
+                    continue;
+                }
+                open.push(Open {
+                    at: [(first + i) as u32, y],
+                    sampling: self.jitter.pixel(offsets, self.width, first + i),
+                    part: means.as_ref().and_then(|means| means.part(i - start)),
+                });
+            }
+            let mut take = |k: usize, decided: Decided, effort: Effort| {
+                let [x, y] = open[k].at;
+                let i = x as usize - first;
+                tally.decided(decided.by, [x, y], effort.samples, Duration::ZERO);
+                bytes[3 * i..][..3].copy_from_slice(&decided.bytes);
+                if let Some(value) = values.get_mut(i) {
+                    *value = decided.value;
                 }
                 if let Some(verdict) = verdicts.get_mut(i) {
-                    *verdict = by;
+                    *verdict = decided.by;
                 }
-            }
+            };
+            self.cascade.decide(&open, Decides::Any, &mut take)?;
         }
         tally.add(DecidedBy::Single, quick);
         Ok(tally)
-    }
-
-    /// Decides a pixel, of which perhaps a part is known: then only the samples that are missing are traced, if that is
-    /// enough. Tells how many were.
-    fn decide(
-        &self,
-        sampling: Sampling<'_>,
-        [x, y]: [u32; 2],
-        part: Option<Part<'_>>,
-    ) -> Result<(Decided, u32), Halt> {
-        let exact_tracer = self.exact_tracer();
-        let samples = sampling.samples();
-        if let Some(part) = part
-            && let Some(decided) = exact_tracer.complete(&self.limits, sampling, x, y, &part)?
-        {
-            return Ok((decided, samples - part.samples().min(samples)));
-        }
-        Ok((exact_tracer.trace(&self.limits, sampling, x, y)?, samples))
     }
 }
 

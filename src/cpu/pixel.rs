@@ -56,6 +56,18 @@ fn first_hit<R: Real>(
     }))
 }
 
+/// The value of pixel (x, y) in one number type, if that suffices to tell what its rays meet.
+pub(crate) fn pixel_value<R: Real>(
+    prepared: &Prepared<R>,
+    limits: &Limits,
+    sampling: Sampling<'_>,
+    x: u32,
+    y: u32,
+) -> Option<V3<R>> {
+    let value = make_pixel(prepared, limits, sampling, x, y).ok()?;
+    value.closed()
+}
+
 /// By which powers of two a ray may be fainter than others and yet be followed, where bytes hang on it; in the end all
 /// are.
 const FAINTER: [Option<i32>; 3] = [Some(-100), Some(-900), None];
@@ -127,8 +139,7 @@ impl<'a> ExactTracer<'a> {
         x: u32,
         y: u32,
     ) -> Option<[Bounded; 3]> {
-        let v = make_pixel(&self.bounded, limits, sampling, x, y).ok()?;
-        let v = v.closed()?;
+        let v = pixel_value(&self.bounded, limits, sampling, x, y)?;
         // The bound is kept low by its own roundings until it is used.
         let used = |c: Bounded| Bounded {
             error: c.error * Bounded::GROW,

@@ -16,6 +16,12 @@ impl Writer<'_> {
     ) {
         let called = &self.shader.module.functions[function];
         let own = name(called);
+        if self.shader.told.unmasked.contains(&own) {
+            panic!(
+                "{}: {own} stores for all lanes, and is called by hand alone",
+                name(self.function)
+            );
+        }
         if self.shader.told.identity.contains(&own)
             && let (Some(result), [argument]) = (result, arguments)
         {

@@ -17,8 +17,14 @@ impl<'a> Writer<'a> {
         let text = self.expression(condition).rust;
         self.flush(|_| true);
         if self.kinds.is_shared(condition) {
-            // What the driver's limit on loops asks has no meaning here.
-            if text.contains("scene.steps_limit") || text.contains("constants::STEPS_LIMIT") {
+            // What the driver's limit on loops asks has no meaning here, where nobody counts rounds.
+            if text.contains("STEPS_LIMIT") {
+                if text != "0 > constants::STEPS_LIMIT" || !reject.is_empty() {
+                    panic!(
+                        "{}: more than the limit on steps in `{text}`",
+                        name(self.function)
+                    );
+                }
                 return;
             }
             self.line(&format!("if {text} {{"));

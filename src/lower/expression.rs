@@ -7,6 +7,7 @@ use naga::{
 };
 
 use super::kinds::Kind;
+use super::signature::shared;
 use super::statement::Writer;
 
 /// A piece of Rust, and how tightly it holds together.
@@ -38,6 +39,14 @@ impl Text {
     }
 }
 
+/// What the names of vectors' functions end with, by what the vectors are of: nothing for `f32`.
+pub(super) fn of_parts(inner: &TypeInner) -> String {
+    match shared(inner) {
+        "f32" => String::new(),
+        number => format!("_{number}"),
+    }
+}
+
 pub(super) const PARTS: [&str; 4] = ["x", "y", "z", "w"];
 
 impl Writer<'_> {
@@ -54,25 +63,22 @@ impl Writer<'_> {
         let inner = self.inner(expression);
         match self.kinds.get(expression) {
             Kind::Shared => {
-                let of = match inner.scalar_kind() {
-                    Some(ScalarKind::Float) => "f32",
-                    Some(ScalarKind::Uint) => "u32",
-                    Some(ScalarKind::Sint) => "i32",
-                    _ => "mask",
+                let of = match shared(inner) {
+                    "bool" => "mask",
+                    number => number,
                 };
                 atom(format!("scene.{of}({})", text.rust))
             }
             Kind::Array => {
-                let (size, scalar) = match inner {
-                    TypeInner::Vector { size, scalar } => (*size as u8, scalar.kind),
-                    _ => self.fail("an array", expression),
+                let TypeInner::Vector { size, .. } = inner else {
+                    self.fail("an array", expression)
                 };
-                let of = match scalar {
-                    ScalarKind::Float => "",
-                    ScalarKind::Uint => "_u32",
-                    _ => "_i32",
-                };
-                atom(format!("scene.vec{size}{of}({})", text.rust))
+                atom(format!(
+                    "scene.vec{}{}({})",
+                    *size as u8,
+                    of_parts(inner),
+                    text.rust
+                ))
             }
             _ => text,
         }
@@ -185,7 +191,7 @@ impl Writer<'_> {
                 expr,
                 kind,
                 convert,
-            } => self.cast(expression, *expr, *kind, convert.is_some(), shared),
+            } => self.cast(expression, *expr, (*kind, *convert), shared),
             Expression::CallResult(_) => self.fail("the result of a call", expression),
             _ => self.fail("an expression", expression),
         }
@@ -193,12 +199,21 @@ impl Writer<'_> {
 
     fn literal(&self, literal: Literal, expression: Handle<Expression>) -> Text {
         match literal {
-            Literal::F32(value) if value < 0.0 => Text {
+            Literal::F32(value) if value.is_sign_negative() => Text {
                 rust: format!("{value:?}"),
                 binding: UNARY,
             },
             Literal::F32(value) => atom(format!("{value:?}")),
+            Literal::F64(value) if value.is_sign_negative() => Text {
+                rust: format!("{value:?}"),
+                binding: UNARY,
+            },
+            Literal::F64(value) => atom(format!("{value:?}")),
             Literal::U32(value) => atom(format!("{value}")),
+            Literal::I32(value) if value < 0 => Text {
+                rust: format!("{value}"),
+                binding: UNARY,
+            },
             Literal::I32(value) => atom(format!("{value}")),
             Literal::Bool(value) => atom(format!("{value}")),
             _ => self.fail("a literal", expression),

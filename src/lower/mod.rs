@@ -1,6 +1,6 @@
 //! From WGSL to Rust: the functions of `shaders/` for the lanes of a vector of the processor, as text that is checked
-//! in (`certify/lanes/ambient/text.rs` and `lit/text.rs`). So one text says what a GPU computes and what the CPU does in
-//! f32.
+//! in (`text.rs` in `certify/lanes/ambient`, `lit` and `lit_double`). So one text says what a GPU computes and what the
+//! CPU does in f32, and in f64 for lit scenes.
 //!
 //! [`module`] reads naga's IR of a composed shader. Numbers that all lanes share are told from those of each lane in
 //! [`kinds`]. [`expression`], [`place`], [`operator`], [`call`] and [`statement`] write them, [`variables`] says where

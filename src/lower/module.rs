@@ -20,6 +20,8 @@ pub(super) struct ByHand {
 /// What the lowering is told of a text.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Told {
+    /// Whether it is one in f64.
+    pub(super) double: bool,
     /// The functions that are called from outside.
     pub(super) roots: &'static [&'static str],
     /// The functions that are called from inside and written outside.

@@ -1,6 +1,6 @@
 //! Operators, functions of WGSL and conversions as Rust.
 
-use naga::{BinaryOperator, Expression, Handle, MathFunction, ScalarKind, TypeInner};
+use naga::{BinaryOperator, Expression, Handle, MathFunction, Scalar, ScalarKind, TypeInner};
 
 use super::expression::{ATOM, CAST, Text, atom};
 use super::statement::Writer;
@@ -113,20 +113,24 @@ impl Writer<'_> {
         &self,
         expression: Handle<Expression>,
         of: Handle<Expression>,
-        kind: ScalarKind,
-        converts: bool,
+        (kind, width): (ScalarKind, Option<u8>),
         shared: bool,
     ) -> Text {
-        let from = self.inner(of).scalar_kind();
-        let to = match kind {
-            ScalarKind::Float => "f32",
-            ScalarKind::Uint => "u32",
-            ScalarKind::Sint => "i32",
+        let converts = width.is_some();
+        let from = self.inner(of).scalar();
+        let to = match (kind, width) {
+            (ScalarKind::Float, Some(8)) => "f64",
+            (ScalarKind::Float, _) => "f32",
+            (ScalarKind::Uint, _) => "u32",
+            (ScalarKind::Sint, _) => "i32",
             _ => self.fail("a conversion", expression),
         };
-        if from == Some(kind) {
+        let same =
+            |from: Scalar| from.kind == kind && width.is_none_or(|width| width == from.width);
+        if from.is_some_and(same) {
             return self.expression(of);
         }
+        let from = from.map(|from| from.kind);
         if shared {
             if !converts {
                 self.fail("bits that lanes share", expression);

@@ -2,10 +2,11 @@
 //! Of a record that all lanes share a member is a reference, else each lane reads its own (`certify/lanes/gather.rs`).
 
 use naga::proc::TypeResolution;
-use naga::{Expression, Handle, ScalarKind, Type, TypeInner};
+use naga::{Expression, Handle, Type, TypeInner};
 
-use super::expression::{ATOM, CAST, PARTS, Text, UNARY, atom};
+use super::expression::{ATOM, CAST, PARTS, Text, UNARY, atom, of_parts};
 use super::kinds::Kind;
+use super::signature::shared;
 use super::statement::Writer;
 
 impl Writer<'_> {
@@ -95,15 +96,10 @@ impl Writer<'_> {
             _ => {}
         }
         let of = match &self.shader.module.types[member].inner {
-            TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => "f32",
-            TypeInner::Scalar(_) => "u32",
-            TypeInner::Vector { size, scalar } => match (*size as u8, scalar.kind) {
-                (2, ScalarKind::Float) => "vec2",
-                (3, ScalarKind::Float) => "vec3",
-                (4, ScalarKind::Float) => "vec4",
-                (2, ScalarKind::Uint) => "vec2_u32",
-                _ => "vec2_i32",
-            },
+            inner @ TypeInner::Scalar(_) => shared(inner).into(),
+            inner @ TypeInner::Vector { size, .. } => {
+                format!("vec{}{}", *size as u8, of_parts(inner))
+            }
             _ => self.fail("a member", expression),
         };
         let record = self.type_handle(base).and_then(|ty| self.shader.record(ty));
@@ -126,14 +122,15 @@ impl Writer<'_> {
 fn one_of_gathered(text: &str, index: u32) -> Option<String> {
     let (of, field) = text.strip_suffix(')')?.split_once("(offset_of!")?;
     let (record, vector) = of.rsplit_once('.')?;
-    let scalar = match vector {
-        "vec2" | "vec3" | "vec4" => "f32",
-        "vec2_u32" => "u32",
+    let (scalar, size) = match vector {
+        "vec2" | "vec3" | "vec4" => ("f32", size_of::<f32>()),
+        "vec2_f64" | "vec3_f64" | "vec4_f64" => ("f64", size_of::<f64>()),
+        "vec2_u32" => ("u32", size_of::<u32>()),
         _ => return None,
     };
     let place = match index {
         0 => String::new(),
-        _ => format!(" + {}", index as usize * size_of::<u32>()),
+        _ => format!(" + {}", index as usize * size),
     };
     Some(format!("{record}.{scalar}(offset_of!{field}{place})"))
 }

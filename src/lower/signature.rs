@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use naga::{Expression, Function, Handle, ScalarKind, Statement, Type, TypeInner};
+use naga::{Expression, Function, Handle, Scalar, ScalarKind, Statement, Type, TypeInner};
 
 use super::kinds::{Kinds, exits};
 use super::module::{Shader, each_statement, inner_blocks, name, root};
@@ -11,7 +11,8 @@ use crate::shader::bounds;
 impl Shader<'_> {
     /// The type for each lane.
     pub(super) fn rust_type(&self, ty: Handle<Type>) -> String {
-        let scalar = |kind: ScalarKind| match kind {
+        let scalar = |scalar: Scalar| match scalar.kind {
+            ScalarKind::Float if scalar.width == 8 => "D<S>",
             ScalarKind::Float => "F<S>",
             ScalarKind::Uint => "U<S>",
             ScalarKind::Sint => "I<S>",
@@ -21,9 +22,9 @@ impl Shader<'_> {
             return format!("Gather<'a, records::{record}, S>");
         }
         match &self.module.types[ty].inner {
-            TypeInner::Scalar(one) => scalar(one.kind).into(),
+            TypeInner::Scalar(one) => scalar(*one).into(),
             TypeInner::Vector { size, scalar: one } => {
-                format!("Vec{}<{}>", *size as u8, scalar(one.kind))
+                format!("Vec{}<{}>", *size as u8, scalar(*one))
             }
             TypeInner::Pointer { base, .. } => format!("&mut {}", self.rust_type(*base)),
             TypeInner::Struct { .. } if self.has_record(ty) => {
@@ -150,10 +151,7 @@ impl Shader<'_> {
             let uniform = self.told.uniform.contains_pair(own, of);
             let ty = match (self.record(argument.ty), uniform) {
                 (Some(record), true) => format!("&records::{record}"),
-                (None, true) => match self.module.types[argument.ty].inner.scalar_kind() {
-                    Some(ScalarKind::Float) => "f32".into(),
-                    _ => "u32".into(),
-                },
+                (None, true) => shared(&self.module.types[argument.ty].inner).into(),
                 _ => self.rust_type(argument.ty),
             };
             arguments.push(format!("{of}: {ty}"));
@@ -167,6 +165,29 @@ impl Shader<'_> {
             "pub(super) fn {own}<'a, S: Simd>({}){result}",
             arguments.join(", ")
         )
+    }
+}
+
+/// The type of a number or truth that all lanes share.
+pub(super) fn shared(inner: &TypeInner) -> &'static str {
+    match inner.scalar() {
+        Some(Scalar {
+            kind: ScalarKind::Float,
+            width: 8,
+        }) => "f64",
+        Some(Scalar {
+            kind: ScalarKind::Float,
+            ..
+        }) => "f32",
+        Some(Scalar {
+            kind: ScalarKind::Uint,
+            ..
+        }) => "u32",
+        Some(Scalar {
+            kind: ScalarKind::Sint,
+            ..
+        }) => "i32",
+        _ => "bool",
     }
 }
 

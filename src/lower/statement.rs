@@ -10,6 +10,7 @@ use naga::{Expression, Function, Handle, LocalVariable, Statement, SwitchValue};
 
 use super::kinds::{Kind, Kinds, exits, returns};
 use super::module::{Shader, inner_blocks, name, root};
+use super::signature::shared as type_of_shared;
 use super::variables::{Regions, address};
 
 /// Writes a function.
@@ -96,7 +97,13 @@ impl<'a> Writer<'a> {
     fn whole(&mut self) -> String {
         let own = name(self.function).to_string();
         for argument in &self.function.arguments {
-            self.names.insert(argument.name.clone().unwrap_or_default());
+            let argument = argument.name.clone().unwrap_or_default();
+            let of_masks = ["gone_", "looping_"]
+                .iter()
+                .any(|start| argument.starts_with(start));
+            if of_masks || !self.names.insert(argument.clone()) {
+                panic!("{own}: an argument called {argument}");
+            }
         }
         for (handle, local) in self.function.local_variables.iter() {
             let name = self.fresh(local.name.as_deref().unwrap_or("local"));
@@ -192,6 +199,12 @@ impl<'a> Writer<'a> {
                         }
                         continue;
                     };
+                    if case.fall_through || breaks(&case.body) {
+                        panic!(
+                            "{}: a case of several values, or with a break",
+                            name(self.function)
+                        );
+                    }
                     self.line(&format!("let here = on & {chosen}.eq(scene.u32({value}));"));
                     self.masked(&case.body);
                     left |= exits(&case.body);
@@ -216,6 +229,12 @@ impl<'a> Writer<'a> {
                 }
             }
             Statement::Continue => {
+                if self.loops.last() == Some(&true) {
+                    panic!(
+                        "{}: a round that all lanes leave early",
+                        name(self.function)
+                    );
+                }
                 self.flush(|_| true);
                 let gone = self.gone();
                 self.line(&format!("{gone} = {gone} | on;"));
@@ -339,13 +358,10 @@ impl<'a> Writer<'a> {
         if let Expression::LocalVariable(local) = self.function.expressions[pointer]
             && self.declared.insert(local)
         {
-            let ty = match self.shader.module.types[self.function.local_variables[local].ty]
-                .inner
-                .scalar_kind()
-            {
-                Some(naga::ScalarKind::Uint) if shared => ": u32",
-                Some(naga::ScalarKind::Float) if shared => ": f32",
-                _ => "",
+            let ty = self.function.local_variables[local].ty;
+            let ty = match type_of_shared(&self.shader.module.types[ty].inner) {
+                number @ ("u32" | "f32" | "f64") if shared => format!(": {number}"),
+                _ => String::new(),
             };
             self.line(&format!("let mut {place}{ty} = {text};"));
         } else if masked {
@@ -355,6 +371,15 @@ impl<'a> Writer<'a> {
             self.line(&format!("{place} = {text};"));
         }
     }
+}
+
+/// Whether a block leaves what stands around it by `break`: not a loop of its own.
+fn breaks(block: &[Statement]) -> bool {
+    block.iter().any(|statement| match statement {
+        Statement::Break => true,
+        Statement::Loop { .. } => false,
+        statement => inner_blocks(statement).into_iter().any(breaks),
+    })
 }
 
 /// What an expression is made of.

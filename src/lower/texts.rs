@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 use std::process::{Command, Stdio};
 
-use super::module::{ByHand, Shader, Told, name};
+use super::module::{ByHand, Shader, Told};
 use super::statement::Writer;
 use crate::shader::bounds;
+use crate::shader::format::{Double, Format as _};
 
 const RECORDS: &[(&str, &str)] = &[
     ("Light", "Light"),
@@ -57,6 +58,7 @@ const UNIFORM: &[(&str, &str)] = &[
 ];
 
 pub(super) const AMBIENT: Told = Told {
+    double: false,
     roots: &[
         "camera_getdir",
         "camera_setpix",
@@ -91,7 +93,26 @@ const fn by_hand(name: &'static str, state: bool, goes_on: bool) -> ByHand {
     }
 }
 
+/// The same in f64.
+pub(super) const LIT_DOUBLE: Told = Told {
+    double: true,
+    by_hand: &[
+        LIT.by_hand[0],
+        LIT.by_hand[1],
+        LIT.by_hand[2],
+        LIT.by_hand[3],
+        ByHand {
+            name: "double_of",
+            state: false,
+            on: false,
+            goes_on: false,
+        },
+    ],
+    ..LIT
+};
+
 pub(super) const LIT: Told = Told {
+    double: false,
     roots: &[
         "camera_getdir",
         "camera_setpix",
@@ -155,11 +176,7 @@ pub(super) fn lowered(about: &str, wgsl: &str, told: Told) -> String {
         text += &shader.struct_text(&struct_name, ty);
     }
     for function in functions {
-        let own = name(&shader.module.functions[function]);
-        let written = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-            Writer::function(&shader, function)
-        }));
-        text += &written.unwrap_or_else(|_| panic!("{own} is not lowered"));
+        text += &Writer::function(&shader, function);
     }
     formatted(&text)
 }
@@ -171,11 +188,9 @@ fn heading(about: &str) -> String {
          run\n//! its test with `UPDATE_EXPECT=1`.\n\n\
          use std::mem::offset_of;\n\n\
          use fearless_simd::Simd;\n\n\
-         use super::by_hand;\n\
+         use super::{{Scene, by_hand, records}};\n\
          use crate::certify::lanes::gather::Gather;\n\
-         use crate::certify::lanes::scene::Scene;\n\
-         use crate::certify::lanes::vector::*;\n\
-         use crate::shader::records;\n\n"
+         use crate::certify::lanes::vector::*;\n\n"
     )
 }
 
@@ -186,11 +201,16 @@ fn constants(shader: &Shader<'_>) -> String {
     for constant in bounds::NAMED {
         let used = shader.wgsl.matches(constant.name).count() > 1;
         if used {
-            let value = bounds::round_up(constant.value);
+            let (name, value) = (constant.name, constant.value);
+            let (ty, value) = if shader.told.double {
+                let value = if name == "U" { Double::U } else { value };
+                ("f64", format!("{:?}", Double::round_up(value)))
+            } else {
+                ("f32", format!("{:?}", bounds::round_up(value)))
+            };
             writeln!(
                 text,
-                "    pub(in crate::certify::lanes) const {}: f32 = {value:?};",
-                constant.name
+                "    pub(in crate::certify::lanes) const {name}: {ty} = {value};"
             )
             .unwrap();
         }
@@ -200,6 +220,7 @@ fn constants(shader: &Shader<'_>) -> String {
         if let (Some(name), naga::Expression::Literal(literal)) = (&constant.name, value) {
             let (ty, value) = match literal {
                 naga::Literal::F32(value) => ("f32", format!("{value:?}")),
+                naga::Literal::F64(value) => ("f64", format!("{value:?}")),
                 naga::Literal::U32(value) => ("u32", format!("{value}")),
                 naga::Literal::I32(value) => ("i32", format!("{value}")),
                 _ => continue,

@@ -5,20 +5,22 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::texts::{AMBIENT, LIT, lowered};
+use super::texts::{AMBIENT, LIT, LIT_DOUBLE, lowered};
+use crate::cpu::pixel::ExactTracer;
 use crate::procedural::Family;
 use crate::settings::Settings;
 use crate::shader::compose::{Entry, compose_with};
 use crate::shader::feature::Feature;
 use crate::shader::feature_set::{FeatureSet, LitFeatures};
+use crate::shader::format::Double;
 use crate::shader::kind::SurfaceKind;
 use crate::shader::pack::Packed;
 
 /// Everything that scenes may have, so that one text serves all.
-fn everything(lit: bool) -> FeatureSet {
+fn everything(lit: bool, double: bool) -> FeatureSet {
     FeatureSet {
         listed: false,
-        double: false,
+        double,
         planes: true,
         polygons: true,
         front: true,
@@ -90,14 +92,24 @@ fn wgsl(set: &FeatureSet) -> String {
         "scenes/notes/walls.txt"
     };
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), scene].iter().collect();
-    let scene = crate::scene::load(&path).unwrap();
-    let packed = Packed::new(&scene, &Settings::default());
+    let (scene, settings) = (crate::scene::load(&path).unwrap(), Settings::default());
     let mut features = set.features();
     // Opaque scenes ask whether anything stands in the way, others what.
     if set.lit.is_some() {
         features.insert(Feature::AnyHit);
     }
-    let text = compose_with(&packed, set, &features, Entry::Pixel);
+    let text = if set.double {
+        let exact_tracer = ExactTracer::new(&scene, settings.view());
+        let packed = Packed::<Double>::rounded(exact_tracer.pairs(), &scene, &settings);
+        compose_with(&packed, set, &features, Entry::Pixel)
+    } else {
+        compose_with(
+            &Packed::new(&scene, &settings),
+            set,
+            &features,
+            Entry::Pixel,
+        )
+    };
     let (head, rest) = text.split_once("\n\n").unwrap();
     let mut named = String::new();
     for line in head.lines() {
@@ -120,6 +132,7 @@ fn wgsl(set: &FeatureSet) -> String {
             }
             value if value.starts_with("vec") => value.split('(').next().unwrap(),
             value if value.ends_with('u') => "u32",
+            _ if set.double => "f64",
             _ => "f32",
         };
         let how = if ty.starts_with("vec") {
@@ -148,16 +161,21 @@ fn check(file: &str, text: &str) {
 
 #[test]
 fn what_is_checked_in_is_what_the_shaders_say() {
-    let text = wgsl(&everything(false));
-    let lit_text = wgsl(&everything(true));
-    if let Some(folder) = std::env::var_os("DUMP_LOWERED") {
-        std::fs::write(PathBuf::from(&folder).join("ambient.wgsl"), &text).unwrap();
-        std::fs::write(PathBuf::from(&folder).join("lit.wgsl"), &lit_text).unwrap();
+    let folder = std::env::var_os("DUMP_LOWERED");
+    for (name, about, told, [lit, double]) in [
+        ("ambient", "Scenes without lights", AMBIENT, [false, false]),
+        ("lit", "Scenes with lights", LIT, [true, false]),
+        (
+            "lit_double",
+            "Scenes with lights, in f64",
+            LIT_DOUBLE,
+            [true, true],
+        ),
+    ] {
+        let text = wgsl(&everything(lit, double));
+        if let Some(folder) = &folder {
+            std::fs::write(PathBuf::from(folder).join(format!("{name}.wgsl")), &text).unwrap();
+        }
+        check(&format!("{name}/text.rs"), &lowered(about, &text, told));
     }
-    check(
-        "ambient/text.rs",
-        &lowered("Scenes without lights", &text, AMBIENT),
-    );
-    let lit = wgsl(&everything(true));
-    check("lit/text.rs", &lowered("Scenes with lights", &lit, LIT));
 }

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::{Expression, Handle, LocalVariable, Statement};
 
 use super::module::{each_statement, inner_blocks, root};
+use super::signature::shared as type_of_shared;
 use super::statement::Writer;
 
 /// Parts of a function between divergences: each but the first has one around it.
@@ -172,15 +173,10 @@ impl<'a> Writer<'a> {
                     format!("<{ty}>::zero(scene.simd)")
                 }
             };
-            let ty = if shared && local.init.is_some() {
-                match self.shader.module.types[local.ty].inner.scalar_kind() {
-                    Some(naga::ScalarKind::Float) => ": f32",
-                    Some(naga::ScalarKind::Uint) => ": u32",
-                    Some(naga::ScalarKind::Sint) => ": i32",
-                    _ => "",
-                }
-            } else {
-                ""
+            let ty = match type_of_shared(&self.shader.module.types[local.ty].inner) {
+                "bool" => String::new(),
+                number if shared && local.init.is_some() => format!(": {number}"),
+                _ => String::new(),
             };
             self.line(&format!("let mut {name}{ty} = {value};"));
         }

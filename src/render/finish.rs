@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::Settings;
 use super::bag::Finished;
 use super::report::Beside;
+use crate::certify::cascade::Decides;
 use crate::certify::pixels::PixelDecider;
 use crate::certify::spot::spots;
 use crate::certify::{DecidedBy, Tally};
@@ -107,9 +108,13 @@ impl<'a, 's> Finish<'a, 's> {
             ..
         } = rendered;
         let pixels = band.rgb.len() / 3;
-        let (decided, mut tally) =
-            self.decider
-                .pixels(band.rows.end - 1, &doubtful, &partials, unwanted)?;
+        let (decided, mut tally) = self.decider.pixels(
+            band.rows.end - 1,
+            &doubtful,
+            &partials,
+            Decides::Any,
+            unwanted,
+        )?;
         if self.verdicts {
             band.verdicts = Some(vec![DecidedBy::Gpu; pixels]);
         }
@@ -153,9 +158,13 @@ impl<'a, 's> Finish<'a, 's> {
         places.extend(doubled.iter().step_by(DOUBLED_A_CHECK));
         places.sort_unstable();
         places.dedup();
-        let (decided, _) = self
-            .decider
-            .pixels(top, &places, &Partials::default(), unwanted)?;
+        let (decided, _) = self.decider.pixels(
+            top,
+            &places,
+            &Partials::default(),
+            Decides::Referee,
+            unwanted,
+        )?;
         for (place, decided) in places.iter().zip(decided) {
             let gpu = *three(band, *place);
             if gpu != decided.bytes {

@@ -7,6 +7,8 @@
 use std::borrow::Cow;
 use std::fmt::Debug;
 
+use bytemuck::Pod;
+
 pub use super::field::{Field, Narrow, Pad1, Pad2, Pad3};
 pub(super) use super::field::{align, largest};
 
@@ -81,7 +83,7 @@ impl Layout {
 }
 
 /// A record of the GPU.
-pub trait Record: Copy + Debug + PartialEq + Send + Sync + 'static {
+pub trait Record: Pod + Debug + PartialEq + Send + Sync {
     /// Its name in WGSL.
     const WGSL: &'static str;
 
@@ -227,7 +229,9 @@ macro_rules! records {
 
             $(
                 $(#[doc = $doc])+
-                #[derive(Debug, Clone, Copy, PartialEq, Default)]
+                // Words one after the other, with nothing in between, so that lanes can read each its own.
+                #[repr(C, packed(4))]
+                #[derive(Debug, Clone, Copy, PartialEq, Default, ::bytemuck::Pod, ::bytemuck::Zeroable)]
                 pub struct $name {
                     $(
                         $(#[doc = $field_doc])*
@@ -265,7 +269,7 @@ macro_rules! records {
 
             fn literals(&self) -> Vec<(&'static str, String)> {
                 use $crate::shader::record::Field;
-                let values = [$((stringify!($field), Field::literal(&self.$field))),+];
+                let values = [$((stringify!($field), Field::literal(&{ self.$field }))),+];
                 values.into_iter().filter(|(_, value)| !value.is_empty()).collect()
             }
 
@@ -293,7 +297,7 @@ macro_rules! records {
                 use $crate::shader::record::{Field, align};
                 $(
                     align(bytes, <$type as Field>::ALIGN);
-                    self.$field.write(bytes);
+                    { self.$field }.write(bytes);
                 )+
                 align(bytes, <Self as Field>::ALIGN);
             }
@@ -301,10 +305,10 @@ macro_rules! records {
     };
     (@why) => { None };
     (@why $why:literal) => { Some($why) };
-    (@fits $field:expr, [], []) => { $crate::shader::record::Field::fits(&$field) };
+    (@fits $field:expr, [], []) => { $crate::shader::record::Field::fits(&{ $field }) };
     (@fits $field:expr, [$why:literal], []) => { true };
     (@fits $field:expr, [], [$factor:literal]) => {
-        $crate::shader::record::Field::fits(&$field) && $crate::shader::record::Field::not_tiny(&$field)
+        $crate::shader::record::Field::fits(&{ $field }) && $crate::shader::record::Field::not_tiny(&{ $field })
     };
 }
 pub(crate) use records;

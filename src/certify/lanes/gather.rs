@@ -7,10 +7,12 @@ use fearless_simd::Simd;
 
 #[cfg(test)]
 use super::tests::{self, Fault};
-use super::vector::{F, I, U, Vec2, Vec3, Vec4};
+use super::vector::{D, F, I, U, Vec2, Vec3, Vec4};
 
 /// Bytes of a word: all fields of all records are made of words.
 const WORD: usize = size_of::<u32>();
+/// Bytes of an f64.
+const DOUBLE: usize = size_of::<f64>();
 
 /// An element of a buffer for each lane, of which fields are read by their places in it (`offset_of`). Lanes that are off
 /// may have any index: they read the last element.
@@ -72,6 +74,27 @@ impl<'a, T: Pod, S: Simd> Gather<'a, T, S> {
     #[inline(always)]
     pub(super) fn f32(&self, field: usize) -> F<S> {
         self.u32(field).float()
+    }
+
+    #[inline(always)]
+    pub(super) fn f64(&self, field: usize) -> D<S> {
+        let half = |more: usize| self.u32(field + more * WORD);
+        D::of_halves(half(0), half(1))
+    }
+
+    #[inline(always)]
+    pub(super) fn vec2_f64(&self, field: usize) -> Vec2<D<S>> {
+        Vec2::new(0, 1).map(|part| self.f64(field + part * DOUBLE))
+    }
+
+    #[inline(always)]
+    pub(super) fn vec3_f64(&self, field: usize) -> Vec3<D<S>> {
+        Vec3::new(0, 1, 2).map(|part| self.f64(field + part * DOUBLE))
+    }
+
+    #[inline(always)]
+    pub(super) fn vec4_f64(&self, field: usize) -> Vec4<D<S>> {
+        Vec4::new(0, 1, 2, 3).map(|part| self.f64(field + part * DOUBLE))
     }
 
     #[inline(always)]

@@ -1,20 +1,27 @@
 //! The GPU's arithmetic on the CPU: as many pixels of a row at once as a vector of the processor holds, in f32 with the
-//! GPU's error bounds (docs/NUMERICS.md).
+//! GPU's error bounds (docs/NUMERICS.md); and in f64 those of lit scenes that f32 leaves open ([`doubles`]).
 //!
 //! Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a pixel that is sure here has its exact
 //! bytes; the others are left to [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is the WGSL itself:
-//! `src/lower` writes `ambient/text.rs` and `lit/text.rs` from `shaders/`. By hand are rows of pixels (`row`, with the
-//! means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels, `lit/by_hand` and
-//! `lit/walk` for rays from anywhere), and what the text's types are here (`vector`, `gather`, `scene`).
-//! [`cpu`](crate::cpu) is the referee.
+//! `src/lower` writes `text.rs` in `ambient`, `lit` and `lit_double` from `shaders/`. By hand are rows of pixels (`row`,
+//! with the means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels, `lit/by_hand`
+//! and `lit/walk` for rays from anywhere), and what the text's types are here (`number`, `double`, `vector`, `gather`,
+//! `scene`). [`cpu`](crate::cpu) is the referee.
 
 mod ambient;
 #[allow(
     dead_code,
     reason = "the texts that are written say what they need of WGSL's types"
 )]
+mod double;
+pub mod doubles;
+#[allow(
+    dead_code,
+    reason = "the texts that are written say what they need of WGSL's types"
+)]
 mod gather;
 mod lit;
+mod lit_double;
 pub mod mean;
 #[allow(
     dead_code,
@@ -37,9 +44,10 @@ use fearless_simd::{Level, Simd};
 
 use crate::settings::Settings;
 use crate::shader::binding;
-use crate::shader::pack::Packed;
+use crate::shader::format::Single;
+use crate::shader::pack::{Lit, Packed};
 use mean::Means;
-use scene::{Buffers, Numbers, Scene};
+use scene::{Buffers, LaneFormat, Numbers, Scene, numbers};
 
 /// Pixels that the widest vectors hold.
 pub const LANES: usize = 16;
@@ -54,8 +62,8 @@ const MOST_DEPTH: usize = lit::MOST_DEPTH;
 #[derive(Debug, Clone)]
 pub struct Lanes {
     packed: Arc<Packed>,
-    numbers: Numbers,
-    buffers: Buffers,
+    numbers: Numbers<f32>,
+    buffers: Buffers<Single>,
     /// Rays a pixel.
     samples: u32,
     level: Level,
@@ -72,20 +80,11 @@ impl Lanes {
 
     /// A scene that was packed with these settings.
     pub fn of(packed: Arc<Packed>, settings: &Settings) -> Option<Self> {
-        if packed.unprovable.is_some() || packed.kinds.is_empty() || packed.bvh_depth > MOST_DEPTH {
+        if !may_be(&packed) {
             return None;
         }
-        let mut numbers = Numbers::new(&packed, settings);
-        let mut buffers = Buffers {
-            objects: binding::objects(&packed),
-            lit_objects: binding::lit_objects(&packed),
-        };
-        if packed.tables.words.is_empty() {
-            // The text asks for tables all the same. It reads beyond the last object then, and finds that there is none.
-            numbers.tables = buffers.objects.len().max(buffers.lit_objects.len()) as u32;
-            buffers.objects.push(Zeroable::zeroed());
-            buffers.lit_objects.push(Zeroable::zeroed());
-        }
+        let mut numbers = numbers(&packed, settings);
+        let buffers = has_all_that_is_asked(&packed, &mut numbers);
         Some(Self {
             numbers,
             buffers,
@@ -97,26 +96,12 @@ impl Lanes {
 
     /// The same with each kind of vectors that this processor has, by name.
     pub fn with_each_vector(&self) -> Vec<(&'static str, Self)> {
-        let level = self.level;
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let levels = [
-            ("SSE2", level.as_sse2().map(Level::Sse2)),
-            ("AVX2", level.as_avx2().map(Level::Avx2)),
-            ("AVX-512", level.as_avx512().map(Level::Avx512)),
-        ];
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        let levels = [("the only ones", Some(level))];
-        let at = |(name, level): (&'static str, Option<Level>)| {
-            let level = level?;
-            Some((
-                name,
-                Self {
-                    level,
-                    ..self.clone()
-                },
-            ))
+        let with = |level| Self {
+            level,
+            ..self.clone()
         };
-        levels.into_iter().filter_map(at).collect()
+        let levels = levels(self.level).into_iter();
+        levels.map(|(name, level)| (name, with(level))).collect()
     }
 
     /// Where the means of pixels are kept, if they have several samples.
@@ -180,6 +165,59 @@ impl Lanes {
             }
         }
     }
+}
+
+/// The kinds of vectors up to a level, by name.
+fn levels(level: Level) -> Vec<(&'static str, Level)> {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    let levels = [
+        ("SSE2", level.as_sse2().map(Level::Sse2)),
+        ("AVX2", level.as_avx2().map(Level::Avx2)),
+        ("AVX-512", level.as_avx512().map(Level::Avx512)),
+    ];
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    let levels = [("the only ones", Some(level))];
+    let there = |(name, level): (&'static str, Option<Level>)| Some((name, level?));
+    levels.into_iter().filter_map(there).collect()
+}
+
+/// So many panes a shadow ray may pass: what each adds to its share's error is counted once, and as much again for all
+/// products of these (docs/NUMERICS.md).
+const MOST_PANES: usize = 900_000;
+
+/// Whether lanes can take a scene: where its bounds can be relied on, rays pass no more panes than bounds count, and the
+/// walk down its tree has room.
+fn may_be<X: LaneFormat>(packed: &Packed<X>) -> bool {
+    // A ray meets a quadric twice, all else once.
+    let panes = |lit: &Lit<X>| {
+        if lit.transparent {
+            2 * lit.objects.len()
+        } else {
+            0
+        }
+    };
+    packed.unprovable.is_none()
+        && !packed.kinds.is_empty()
+        && packed.bvh_depth <= MOST_DEPTH
+        && packed.lit.as_ref().map_or(0, panes) <= MOST_PANES
+}
+
+/// The buffers that the text asks for, whether the scene has tables or not: it reads beyond the last object then, and
+/// finds that there is none.
+fn has_all_that_is_asked<X: LaneFormat>(
+    packed: &Packed<X>,
+    numbers: &mut Numbers<X::Real>,
+) -> Buffers<X> {
+    let mut buffers = Buffers {
+        objects: binding::objects(packed),
+        lit_objects: binding::lit_objects(packed),
+    };
+    if packed.tables.words.is_empty() {
+        numbers.tables = buffers.objects.len().max(buffers.lit_objects.len()) as u32;
+        buffers.objects.push(Zeroable::zeroed());
+        buffers.lit_objects.push(Zeroable::zeroed());
+    }
+    buffers
 }
 
 /// What words are of: pixels from column `first` of row `y` on; their means if they have several samples, which lie by

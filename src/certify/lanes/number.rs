@@ -54,6 +54,9 @@ macro_rules! numbers {
                 Self(S::$inner::from_fn(simd, of))
             }
 
+            /// How many there are.
+            pub(super) const LANES: usize = S::$inner::LEN;
+
             /// The numbers.
             #[inline(always)]
             pub(super) fn as_slice(&self) -> &[$one] {

@@ -2,15 +2,15 @@
 
 use fearless_simd::Simd;
 
+use super::records::Sphere;
 use super::text::{
     Hit, PrimaryIntersection, Ray, from_pixel, nearer, plane_hits, polygon_hits, quadric_hits,
     sphere_disc, sphere_hits,
 };
-use crate::certify::lanes::scene::Scene;
+use super::{Number, Scene};
 #[cfg(test)]
 use crate::certify::lanes::tests::{self, Fault};
-use crate::certify::lanes::vector::{Lanewise as _, M};
-use crate::shader::records::Sphere;
+use crate::certify::lanes::vector::{Lanewise as _, M, Vec2};
 
 /// The closest object that each ray hits.
 #[inline(always)]
@@ -69,10 +69,10 @@ fn sphere_if_near<'a, S: Simd>(
     let at = from_pixel(scene, ray, scene.vec2_i32(sphere.anchor));
     let disc = sphere_disc(scene, scene.same(sphere), at);
     #[cfg(test)]
-    if tests::is_wrong(Fault::MissedByOne) && !disc.gt(scene.f32(-sphere.disc_error)).all() {
+    if tests::is_wrong(Fault::MissedByOne) && !disc.gt(scene.real(-sphere.disc_error)).all() {
         return None;
     }
-    if disc.gt(scene.f32(-sphere.disc_error)).any() {
+    if disc.gt(scene.real(-sphere.disc_error)).any() {
         Some(sphere_hits(scene, sphere, ray))
     } else {
         None
@@ -86,18 +86,22 @@ fn in_cells<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>, closest: &mut Hit
     let Some(grid) = &scene.packed.screen_grid else {
         return;
     };
-    let columns = ray.pixel.x.as_slice();
-    let (first, last) = (columns[0] as u32, columns[columns.len() - 1] as u32);
-    let row = ray.pixel.y.as_slice()[0] as u32;
-    let side = grid.sides[0];
-    let mut column = first;
-    while column <= last {
-        let end = (column / side + 1) * side;
-        let inside =
-            ray.pixel.x.ge(scene.i32(column as i32)) & ray.pixel.x.lt(scene.i32(end as i32));
+    let Vec2 { x, y } = ray.pixel;
+    let sides = grid.sides.map(|side| side as i32);
+    let mut left = scene.mask(true).bits();
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize;
+        let first = [x.as_slice()[lane], y.as_slice()[lane]];
+        let [column, row] = [0, 1].map(|i| first[i] / sides[i] * sides[i]);
+        let inside = x.ge(scene.i32(column))
+            & x.lt(scene.i32(column + sides[0]))
+            & y.ge(scene.i32(row))
+            & y.lt(scene.i32(row + sides[1]));
+        left &= !(inside.bits() | 1 << lane);
         for &place in grid.at([f64::from(column), f64::from(row)]) {
             let place = place as usize;
-            let behind = (closest.inverse - closest.error).gt(scene.f32(grid.max_inverse[place]));
+            let nearest = scene.real(Number::from(grid.max_inverse[place]));
+            let behind = (closest.inverse - closest.error).gt(nearest);
             if !(inside & !behind).any() {
                 break;
             }
@@ -115,7 +119,6 @@ fn in_cells<'a, S: Simd>(scene: &'a Scene<'a, S>, ray: Ray<S>, closest: &mut Hit
                 }
             }
         }
-        column = end;
     }
 }
 

@@ -2,9 +2,9 @@
 
 use fearless_simd::{Simd, prelude::*};
 
+use super::Scene;
 use super::text::{State, camera_getdir, camera_setpix, jitter_hash, ray_trace};
 use crate::certify::lanes::mean::{Means, Shares};
-use crate::certify::lanes::scene::Scene;
 #[cfg(test)]
 use crate::certify::lanes::tests::{self, Fault};
 use crate::certify::lanes::vector::{F, I, U, Vec2, Vec3};

@@ -1,41 +1,70 @@
 //! What the lanes know of a scene: the numbers that stand in the GPU's text, and what its buffers hold.
 
+use std::fmt::Debug;
 use std::ops::Deref;
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable as _};
 use fearless_simd::Simd;
 
 use super::gather::Gather;
-use super::vector::{F, I, Lanewise, M, U, Vec2, Vec3, Vec4};
+use super::vector::{D, F, I, Lanewise, M, U, Vec2, Vec3, Vec4};
 use crate::real::rational::two_to;
 use crate::settings::Settings;
 use crate::shader::bounds;
+use crate::shader::format::{Double, Format, Single};
 use crate::shader::pack::{Lit, Packed};
-use crate::shader::records::{
-    BvhNode, Light, LitObject, Material, Object, Projector, Quadric, Texplane, TiledPlane,
-    WorldPlane, WorldSphere,
+use crate::shader::records::Dispatch;
+use crate::shader::records::wide::{
+    BvhNode, CameraNumbers, Light, LitObject, Material, Object, Plane, Polygon, ProceduralPlane,
+    Projector, Quadric, Sphere, SphereHit, Texplane, TiledPlane, WorldPlane, WorldSphere,
 };
-use crate::shader::records::{Plane, Polygon, ProceduralPlane, Sphere, SphereHit};
+
+/// A format of the lanes' numbers.
+pub(super) trait LaneFormat: Format {
+    /// A number that all lanes share.
+    type Real: Copy + Debug;
+
+    /// The nearest number.
+    fn real(value: f64) -> Self::Real;
+}
+
+impl LaneFormat for Single {
+    type Real = f32;
+
+    #[inline(always)]
+    fn real(value: f64) -> f32 {
+        value as f32
+    }
+}
+
+impl LaneFormat for Double {
+    type Real = f64;
+
+    #[inline(always)]
+    fn real(value: f64) -> f64 {
+        value
+    }
+}
 
 /// The numbers that the text refers to by name, as the GPU's text has them.
 #[derive(Debug, Clone)]
-pub(super) struct Numbers {
+pub(super) struct Numbers<R> {
     pub(super) camera_anchor: [i32; 2],
-    pub(super) camera_step: [f32; 2],
-    pub(super) camera_offset: [f32; 2],
-    pub(super) camera_distance: f32,
-    pub(super) camera_gain: f32,
-    pub(super) camera_unit: f32,
-    pub(super) w_error: f32,
-    pub(super) length_error: f32,
-    pub(super) dir_error: f32,
-    pub(super) value_error: f32,
-    pub(super) dark: f32,
-    pub(super) bright: f32,
-    pub(super) light_nearest: f32,
-    pub(super) total_least: f32,
-    pub(super) bvh_size: f32,
-    pub(super) max_path: f32,
+    pub(super) camera_step: [R; 2],
+    pub(super) camera_offset: [R; 2],
+    pub(super) camera_distance: R,
+    pub(super) camera_gain: R,
+    pub(super) camera_unit: R,
+    pub(super) w_error: R,
+    pub(super) length_error: R,
+    pub(super) dir_error: R,
+    pub(super) value_error: R,
+    pub(super) dark: R,
+    pub(super) bright: R,
+    pub(super) light_nearest: R,
+    pub(super) total_least: R,
+    pub(super) bvh_size: R,
+    pub(super) max_path: R,
     pub(super) max_rays: u32,
     pub(super) lights_count: u32,
     /// How a loop's rounds count for a driver: nobody counts them here.
@@ -46,95 +75,128 @@ pub(super) struct Numbers {
     pub(super) third_sides: u32,
     /// Whether some object lets light through.
     pub(super) transparent: bool,
+    /// What the host tells a GPU with each dispatch: nothing but a 0 is asked of it.
+    pub(super) dispatch: Dispatch,
 }
 
-impl Numbers {
-    pub(super) fn new(packed: &Packed, settings: &Settings) -> Self {
-        let camera = &packed.camera;
-        let numbers = &camera.numbers;
-        let [length, dir] = bounds::direction_roundings(settings.supersampling().is_some());
-        let for_spread =
-            |roundings: f64| bounds::round_up(roundings * f64::from(camera.condition) * bounds::U);
-        let lit = packed.lit.as_ref();
-        let words = packed.tables.words.len();
-        Self {
-            camera_anchor: numbers.anchor,
-            camera_step: numbers.step,
-            camera_offset: numbers.offset,
-            camera_distance: numbers.distance,
-            camera_gain: numbers.gain,
-            camera_unit: numbers.unit,
-            w_error: camera.w_error,
-            length_error: for_spread(length),
-            dir_error: for_spread(dir),
-            value_error: for_spread(bounds::VALUE_ROUNDINGS),
-            dark: packed.dark,
-            bright: bounds::round_up(packed.brightest()),
-            light_nearest: bounds::round_up(packed.light_nearest()),
-            total_least: bounds::round_up(packed.total_least()),
-            bvh_size: packed.tree_size,
-            max_path: (settings.limits.max_path * two_to(-packed.scale)) as f32,
-            max_rays: settings.limits.max_rays,
-            lights_count: lit.map_or(0, |lit| lit.lights.len() as u32),
-            lanes: 1,
-            tables: packed.objects.len() as u32,
-            columns: packed.tables.columns,
-            third_sides: (packed.objects.len() + words) as u32,
-            transparent: lit.is_some_and(|lit| lit.transparent),
-        }
+/// So many rays a sample may have at most: no sum of theirs leaves the range then (docs/NUMERICS.md).
+const MOST_RAYS: u32 = 1 << 16;
+
+/// The numbers for a format.
+pub(super) fn numbers<X: LaneFormat>(packed: &Packed<X>, settings: &Settings) -> Numbers<X::Real> {
+    let camera = &packed.camera;
+    let seen: CameraNumbers = X::wide(&camera.numbers);
+    let [length, dir] = bounds::direction_roundings(settings.supersampling().is_some());
+    let above = |value: f64| X::real(X::round_up(value));
+    let for_spread = |roundings: f64| above(roundings * f64::from(camera.condition) * X::U);
+    let lit = packed.lit.as_ref();
+    let words = packed.tables.words.len();
+    Numbers {
+        camera_anchor: seen.anchor,
+        camera_step: seen.step.map(X::real),
+        camera_offset: seen.offset.map(X::real),
+        camera_distance: X::real(seen.distance),
+        camera_gain: X::real(seen.gain),
+        camera_unit: X::real(seen.unit),
+        w_error: X::real(camera.w_error.into()),
+        length_error: for_spread(length),
+        dir_error: for_spread(dir),
+        value_error: for_spread(bounds::VALUE_ROUNDINGS),
+        dark: X::real(packed.dark.into()),
+        bright: above(packed.brightest()),
+        light_nearest: above(packed.light_nearest()),
+        total_least: above(packed.total_least()),
+        bvh_size: X::real(packed.tree_size.into()),
+        max_path: X::real(settings.limits.max_path * two_to(-packed.scale)),
+        max_rays: settings.limits.max_rays.min(MOST_RAYS),
+        lights_count: lit.map_or(0, |lit| lit.lights.len() as u32),
+        lanes: 1,
+        tables: packed.objects.len() as u32,
+        columns: packed.tables.columns,
+        third_sides: (packed.objects.len() + words) as u32,
+        transparent: lit.is_some_and(|lit| lit.transparent),
+        dispatch: Dispatch::zeroed(),
     }
 }
 
 /// The buffers that are not as the packed scene has them.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Buffers {
+#[derive(Debug, Clone)]
+pub(super) struct Buffers<X: Format> {
     /// The objects of a scene without lights, and the tables behind them.
-    pub(super) objects: Vec<Object>,
+    pub(super) objects: Vec<X::Record<Object>>,
     /// The same of a scene with lights, and the third sides behind the tables.
-    pub(super) lit_objects: Vec<LitObject>,
+    pub(super) lit_objects: Vec<X::Record<LitObject>>,
 }
 
 /// A scene as the lanes' functions ask for it.
-pub(super) struct Scene<'a, S: Simd> {
+pub(super) struct Scene<'a, S: Simd, X: LaneFormat> {
     pub(super) simd: S,
-    numbers: &'a Numbers,
-    pub(super) packed: &'a Packed,
-    pub(super) objects: &'a [Object],
-    pub(super) lit_objects: &'a [LitObject],
-    pub(super) polygons: &'a [Polygon],
-    pub(super) planes: &'a [Plane],
-    pub(super) spheres: &'a [Sphere],
-    pub(super) sphere_points: &'a [SphereHit],
-    pub(super) quadrics: &'a [Quadric],
-    pub(super) tiled_planes: &'a [TiledPlane],
-    pub(super) pplanes: &'a [ProceduralPlane],
-    pub(super) texplanes: &'a [Texplane],
+    numbers: &'a Numbers<X::Real>,
+    pub(super) packed: &'a Packed<X>,
+    pub(super) objects: &'a [X::Record<Object>],
+    pub(super) lit_objects: &'a [X::Record<LitObject>],
+    pub(super) polygons: &'a [X::Record<Polygon>],
+    pub(super) planes: &'a [X::Record<Plane>],
+    pub(super) spheres: &'a [X::Record<Sphere>],
+    pub(super) sphere_points: &'a [X::Record<SphereHit>],
+    pub(super) quadrics: &'a [X::Record<Quadric>],
+    pub(super) tiled_planes: &'a [X::Record<TiledPlane>],
+    pub(super) pplanes: &'a [X::Record<ProceduralPlane>],
+    pub(super) texplanes: &'a [X::Record<Texplane>],
     pub(super) texels: &'a [u32],
-    pub(super) bvh: &'a [BvhNode],
-    pub(super) materials: &'a [Material],
-    pub(super) lights: &'a [Light],
-    pub(super) projectors: &'a [Projector],
-    pub(super) world_planes: &'a [WorldPlane],
-    pub(super) world_spheres: &'a [WorldSphere],
+    pub(super) bvh: &'a [X::Record<BvhNode>],
+    pub(super) materials: &'a [X::Record<Material>],
+    pub(super) lights: &'a [X::Record<Light>],
+    pub(super) projectors: &'a [X::Record<Projector>],
+    pub(super) world_planes: &'a [X::Record<WorldPlane>],
+    pub(super) world_spheres: &'a [X::Record<WorldSphere>],
 }
 
-impl<S: Simd> Deref for Scene<'_, S> {
-    type Target = Numbers;
+impl<S: Simd, X: LaneFormat> Deref for Scene<'_, S, X> {
+    type Target = Numbers<X::Real>;
 
     #[inline(always)]
-    fn deref(&self) -> &Numbers {
+    fn deref(&self) -> &Numbers<X::Real> {
         self.numbers
     }
 }
 
-impl<'a, S: Simd> Scene<'a, S> {
+impl<'a, S: Simd> Scene<'a, S, Single> {
+    /// A number of the scene's format.
+    #[inline(always)]
+    pub(super) fn real(&self, value: f32) -> F<S> {
+        self.f32(value)
+    }
+
+    /// A vector of such numbers.
+    #[inline(always)]
+    pub(super) fn reals(&self, value: [f32; 3]) -> Vec3<F<S>> {
+        self.vec3(value)
+    }
+}
+
+impl<'a, S: Simd> Scene<'a, S, Double> {
+    /// A number of the scene's format.
+    #[inline(always)]
+    pub(super) fn real(&self, value: f64) -> D<S> {
+        self.f64(value)
+    }
+
+    /// A vector of such numbers.
+    #[inline(always)]
+    pub(super) fn reals(&self, value: [f64; 3]) -> Vec3<D<S>> {
+        self.vec3_f64(value)
+    }
+}
+
+impl<'a, S: Simd, X: LaneFormat> Scene<'a, S, X> {
     pub(super) fn new(
         simd: S,
-        packed: &'a Packed,
-        numbers: &'a Numbers,
-        buffers: &'a Buffers,
+        packed: &'a Packed<X>,
+        numbers: &'a Numbers<X::Real>,
+        buffers: &'a Buffers<X>,
     ) -> Self {
-        fn of<T>(packed: &Packed, of: impl Fn(&Lit) -> &Vec<T>) -> &[T] {
+        fn of<X: Format, T>(packed: &Packed<X>, of: impl Fn(&Lit<X>) -> &Vec<T>) -> &[T] {
             packed.lit.as_ref().map_or(&[], |lit| of(lit))
         }
         Self {
@@ -164,6 +226,11 @@ impl<'a, S: Simd> Scene<'a, S> {
     #[inline(always)]
     pub(super) fn f32(&self, value: f32) -> F<S> {
         F::splat(self.simd, value)
+    }
+
+    #[inline(always)]
+    pub(super) fn f64(&self, value: f64) -> D<S> {
+        D::splat(self.simd, value)
     }
 
     #[inline(always)]
@@ -206,6 +273,23 @@ impl<'a, S: Simd> Scene<'a, S> {
     pub(super) fn vec4(&self, value: [f32; 4]) -> Vec4<F<S>> {
         let [x, y, z, w] = value;
         Vec4::new(self.f32(x), self.f32(y), self.f32(z), self.f32(w))
+    }
+
+    #[inline(always)]
+    pub(super) fn vec2_f64(&self, value: [f64; 2]) -> Vec2<D<S>> {
+        Vec2::new(self.f64(value[0]), self.f64(value[1]))
+    }
+
+    #[inline(always)]
+    pub(super) fn vec3_f64(&self, value: [f64; 3]) -> Vec3<D<S>> {
+        let [x, y, z] = value;
+        Vec3::new(self.f64(x), self.f64(y), self.f64(z))
+    }
+
+    #[inline(always)]
+    pub(super) fn vec4_f64(&self, value: [f64; 4]) -> Vec4<D<S>> {
+        let [x, y, z, w] = value;
+        Vec4::new(self.f64(x), self.f64(y), self.f64(z), self.f64(w))
     }
 
     /// Of each lane its own element.

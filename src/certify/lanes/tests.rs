@@ -6,10 +6,13 @@ use std::sync::Arc;
 
 use fearless_simd::{Simd, prelude::*};
 
+use super::doubles::DoubleLanes;
 use super::mean::{Means, Shares};
+use super::scene::numbers;
 use super::vector::{F, M};
 use super::{Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
+use crate::cpu::trace::Limits;
 use crate::scene::{Scene, load};
 use crate::settings::Settings;
 use crate::shader::pack::Packed;
@@ -57,6 +60,11 @@ impl Fault {
     fn is_of_samples(self) -> bool {
         matches!(self, Self::SamplesShifted | Self::SampleLost)
     }
+
+    /// Whether it may be in f64 too, which has no row of pixels.
+    fn is_of_lists(self) -> bool {
+        !self.is_of_samples()
+    }
 }
 
 /// A fault shows every so many times: loops come to an end then.
@@ -90,11 +98,13 @@ pub(super) fn shifted<S: Simd>(fault: Fault, numbers: F<S>) -> F<S> {
     }
 }
 
-const SIZE: [u32; 2] = [45, 31];
+const SIZE: [u32; 2] = [33, 23];
 
 /// A picture, and what is right.
 struct Referee {
     lanes: Lanes,
+    /// Scenes with lights in f64, of one sample, with each kind of vectors.
+    doubles: Vec<(&'static str, DoubleLanes)>,
     settings: Settings,
     bytes: Vec<[u8; 3]>,
 }
@@ -116,7 +126,13 @@ impl Referee {
             let sampling = jitter.pixel(None, SIZE[0] as usize, x as usize);
             exact_tracer.trace(&limits, sampling, x, y).unwrap().bytes
         });
+        let doubles = DoubleLanes::may_be(scene, &settings).then(|| {
+            DoubleLanes::new(scene, &settings)
+                .unwrap()
+                .with_each_vector()
+        });
         Self {
+            doubles: doubles.unwrap_or_default(),
             bytes: bytes.collect(),
             lanes: Lanes::of(Arc::new(packed), &settings).unwrap(),
             settings,
@@ -132,6 +148,26 @@ impl Referee {
             .collect()
     }
 
+    /// The same in f64, of one in so many pixels, in an order in which no two neighbours are side by side.
+    fn counts_of_doubles(&self, step: usize) -> Vec<(&'static str, [usize; 2])> {
+        let all = self.bytes.len();
+        // A step that no side of the picture divides.
+        let order: Vec<usize> = (0..all).step_by(step).map(|i| i * 457 % all).collect();
+        let pixels = order.len();
+        let width = SIZE[0] as usize;
+        let places: Vec<_> = order
+            .iter()
+            .map(|i| [i % width, i / width].map(|i| i as u32))
+            .collect();
+        let count = |(name, doubles): &(&'static str, DoubleLanes)| {
+            let mut words = vec![OPEN; pixels];
+            doubles.pixels(&places, &mut words);
+            let right = order.iter().map(|i| &self.bytes[*i]);
+            (*name, counted(&words, right))
+        };
+        self.doubles.iter().map(count).collect()
+    }
+
     fn count(&self, lanes: &Lanes) -> [usize; 2] {
         let mut words = vec![OPEN; SIZE[0] as usize];
         let (mut sure, mut wrong) = (0, 0);
@@ -140,14 +176,23 @@ impl Referee {
                 None => lanes.strip([0, y], &mut words),
                 Some(mut means) => lanes.sampled([0, y], None, &mut words, &mut means),
             }
-            for (word, right) in words.iter().zip(right) {
-                let [red, green, blue, verdict] = word.to_le_bytes();
-                sure += usize::from(verdict == 0);
-                wrong += usize::from(verdict == 0 && [red, green, blue] != *right);
-            }
+            let row = counted(&words, right.iter());
+            sure += row[0];
+            wrong += row[1];
         }
         [sure, wrong]
     }
+}
+
+/// How many words are sure, and wrong.
+fn counted<'a>(words: &[u32], right: impl Iterator<Item = &'a [u8; 3]>) -> [usize; 2] {
+    let (mut sure, mut wrong) = (0, 0);
+    for (word, right) in words.iter().zip(right) {
+        let [red, green, blue, verdict] = word.to_le_bytes();
+        sure += usize::from(verdict == 0);
+        wrong += usize::from(verdict == 0 && [red, green, blue] != *right);
+    }
+    [sure, wrong]
 }
 
 fn scene(name: &str) -> Scene {
@@ -183,6 +228,11 @@ fn what_is_wrong_where_lanes_are_put_together_is_noticed() {
             assert_eq!(wrong, 0, "{name}, {} samples", referee.settings.samples);
             assert!(2 * sure > referee.bytes.len(), "{name}: {sure} sure");
         }
+        for (name, [sure, wrong]) in referee.counts_of_doubles(1) {
+            println!("{name}, in f64: {sure} of {} sure", referee.bytes.len());
+            assert_eq!(wrong, 0, "{name}, in f64");
+            assert!(100 * sure > 95 * referee.bytes.len(), "{name}: {sure} sure");
+        }
     }
     for fault in Fault::ALL {
         let referees = if fault.is_of_samples() {
@@ -197,6 +247,22 @@ fn what_is_wrong_where_lanes_are_put_together_is_noticed() {
             let wrong: Vec<_> = counts.iter().map(|counts| counts[kind].1[1]).collect();
             println!("{fault:?}, {name}: {wrong:?} wrong");
             assert!(wrong.iter().sum::<usize>() > 0, "{fault:?}, {name}");
+        }
+        if !fault.is_of_lists() {
+            continue;
+        }
+        FAULT.set(Some(fault));
+        let counts: Vec<_> = one.iter().map(|one| one.counts_of_doubles(2)).collect();
+        FAULT.set(None);
+        let lit: Vec<_> = counts.iter().filter(|counts| !counts.is_empty()).collect();
+        for (kind, (name, _)) in lit
+            .first()
+            .into_iter()
+            .flat_map(|first| first.iter().enumerate())
+        {
+            let wrong: Vec<_> = lit.iter().map(|counts| counts[kind].1[1]).collect();
+            println!("{fault:?}, {name}, in f64: {wrong:?} wrong");
+            assert!(wrong.iter().sum::<usize>() > 0, "{fault:?}, {name}, in f64");
         }
     }
 }
@@ -266,5 +332,28 @@ fn means_hold_what_was_added() {
                 ));
             }
         }
+    }
+}
+
+#[test]
+fn what_no_bound_counts_is_not_taken() {
+    let scene = scene("lit/glass_panes.txt");
+    let settings = Settings {
+        limits: Limits {
+            max_rays: u32::MAX,
+            ..Settings::default().limits
+        },
+        ..Settings::default()
+    };
+    let packed = Packed::new(&scene, &settings);
+    // Sums of more rays might leave the range.
+    assert_eq!(numbers(&packed, &settings).max_rays, 1 << 16);
+    // A ray may pass more panes than bounds count.
+    for (objects, taken) in [(450_000, true), (450_001, false)] {
+        let mut packed = packed.clone();
+        let lit = packed.lit.as_mut().unwrap();
+        lit.objects = vec![lit.objects[0]; objects];
+        let lanes = Lanes::of(Arc::new(packed), &settings);
+        assert_eq!(lanes.is_some(), taken, "{objects}");
     }
 }

@@ -5,6 +5,7 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 use fearless_simd::Simd;
 
+pub(super) use super::double::D;
 pub(super) use super::number::{F, I, Lanewise, M, U};
 
 macro_rules! vectors {
@@ -73,23 +74,8 @@ macro_rules! vectors {
             }
         }
 
-        impl<S: Simd> Mul<F<S>> for $vector<F<S>> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn mul(self, by: F<S>) -> Self {
-                self.map(|part| part * by)
-            }
-        }
-
-        impl<S: Simd> Mul<f32> for $vector<F<S>> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn mul(self, by: f32) -> Self {
-                self.map(|part| part * by)
-            }
-        }
+        vectors!(@real $vector: F f32; $first $($part)+);
+        vectors!(@real $vector: D f64; $first $($part)+);
 
         impl<S: Simd> Mul<u32> for $vector<U<S>> {
             type Output = Self;
@@ -97,32 +83,6 @@ macro_rules! vectors {
             #[inline(always)]
             fn mul(self, by: u32) -> Self {
                 self.map(|part| part * by)
-            }
-        }
-
-        impl<S: Simd> Mul<$vector<F<S>>> for F<S> {
-            type Output = $vector<F<S>>;
-
-            #[inline(always)]
-            fn mul(self, other: $vector<F<S>>) -> $vector<F<S>> {
-                other.map(|part| self * part)
-            }
-        }
-
-        impl<S: Simd> Mul<$vector<F<S>>> for f32 {
-            type Output = $vector<F<S>>;
-
-            #[inline(always)]
-            fn mul(self, other: $vector<F<S>>) -> $vector<F<S>> {
-                other.map(|part| self * part)
-            }
-        }
-
-        impl<S: Simd> $vector<F<S>> {
-            /// The sum of the products of components, from the first to the last.
-            #[inline(always)]
-            pub(super) fn dot(self, other: Self) -> F<S> {
-                self.$first * other.$first $(+ self.$part * other.$part)+
             }
         }
 
@@ -149,6 +109,51 @@ macro_rules! vectors {
             }
         }
     )+};
+    (@real $vector:ident: $lanes:ident $one:ident; $first:ident $($part:ident)+) => {
+        impl<S: Simd> Mul<$lanes<S>> for $vector<$lanes<S>> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn mul(self, by: $lanes<S>) -> Self {
+                self.map(|part| part * by)
+            }
+        }
+
+        impl<S: Simd> Mul<$one> for $vector<$lanes<S>> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn mul(self, by: $one) -> Self {
+                self.map(|part| part * by)
+            }
+        }
+
+        impl<S: Simd> Mul<$vector<$lanes<S>>> for $lanes<S> {
+            type Output = $vector<$lanes<S>>;
+
+            #[inline(always)]
+            fn mul(self, other: $vector<$lanes<S>>) -> $vector<$lanes<S>> {
+                other.map(|part| self * part)
+            }
+        }
+
+        impl<S: Simd> Mul<$vector<$lanes<S>>> for $one {
+            type Output = $vector<$lanes<S>>;
+
+            #[inline(always)]
+            fn mul(self, other: $vector<$lanes<S>>) -> $vector<$lanes<S>> {
+                other.map(|part| self * part)
+            }
+        }
+
+        impl<S: Simd> $vector<$lanes<S>> {
+            /// The sum of the products of components, from the first to the last.
+            #[inline(always)]
+            pub(super) fn dot(self, other: Self) -> $lanes<S> {
+                self.$first * other.$first $(+ self.$part * other.$part)+
+            }
+        }
+    };
     (@each $vector:ident: $($op:ident $name:ident),+) => {$(
         impl<T: Copy + $op<Q, Output = T>, Q: Copy> $op<$vector<Q>> for $vector<T> {
             type Output = Self;
@@ -167,17 +172,23 @@ vectors! {
     Vec4: x y z w;
 }
 
-impl<S: Simd> Vec3<F<S>> {
-    /// At right angles to both.
-    #[inline(always)]
-    pub(super) fn cross(self, other: Self) -> Self {
-        Self::new(
-            self.y * other.z - self.z * other.y,
-            self.z * other.x - self.x * other.z,
-            self.x * other.y - self.y * other.x,
-        )
-    }
+macro_rules! cross {
+    ($($lanes:ident),+) => {$(
+        impl<S: Simd> Vec3<$lanes<S>> {
+            /// At right angles to both.
+            #[inline(always)]
+            pub(super) fn cross(self, other: Self) -> Self {
+                Self::new(
+                    self.y * other.z - self.z * other.y,
+                    self.z * other.x - self.x * other.z,
+                    self.x * other.y - self.y * other.x,
+                )
+            }
+        }
+    )+};
 }
+
+cross!(F, D);
 
 /// A record of lanes, as a struct of WGSL.
 macro_rules! record {

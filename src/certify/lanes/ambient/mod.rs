@@ -20,3 +20,12 @@ pub(super) mod row;
     reason = "it is written by a program"
 )]
 pub(super) mod text;
+
+use crate::certify::lanes::scene;
+use crate::shader::format::Single;
+use crate::shader::records;
+
+/// A number that all lanes share.
+type Number = f32;
+/// The scene in f32.
+type Scene<'a, S> = scene::Scene<'a, S, Single>;

@@ -5,11 +5,9 @@ use std::mem::offset_of;
 
 use fearless_simd::Simd;
 
-use super::by_hand;
+use super::{Scene, by_hand, records};
 use crate::certify::lanes::gather::Gather;
-use crate::certify::lanes::scene::Scene;
 use crate::certify::lanes::vector::*;
-use crate::shader::records;
 
 /// What the text refers to by name.
 pub(super) mod constants {

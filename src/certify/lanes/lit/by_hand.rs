@@ -3,17 +3,17 @@
 use fearless_simd::Simd;
 
 pub(super) use super::primary::find_closest_object;
+use super::records::{WorldPlane, WorldSphere};
 use super::text::constants::{NOTHING, T_MAX};
 use super::text::{
     self, Intersection, Range, SecondaryHit, SecondaryRay, Shadow, State, closest_approach,
     nearer_secondary, occludes, plane_hits_from, quadric_hits_from, sphere_hits_from,
 };
 use super::walk::Walk;
-use crate::certify::lanes::scene::Scene;
+use super::{Number, Scene};
 #[cfg(test)]
 use crate::certify::lanes::tests::{self, Fault};
-use crate::certify::lanes::vector::{Lanewise as _, M, U};
-use crate::shader::records::{WorldPlane, WorldSphere};
+use crate::certify::lanes::vector::{Lanewise as _, M, U, Vec3};
 
 /// The first object that each ray meets in range.
 pub(super) fn closest_hit<'a, S: Simd>(
@@ -29,7 +29,7 @@ pub(super) fn closest_hit<'a, S: Simd>(
             let mut closest = SecondaryHit::zero(scene.simd);
             closest.object = scene.u32(NOTHING);
             closest.group = scene.u32(NOTHING);
-            closest.t = scene.f32(T_MAX);
+            closest.t = scene.real(T_MAX);
             closest.low = closest.t;
             closest.rival = closest.t;
             let lit = LooseAndTrees::new(scene);
@@ -115,16 +115,16 @@ fn all_miss<'a, S: Simd>(
     sphere: &WorldSphere,
     ray: SecondaryRay<S>,
 ) -> bool {
-    let [radius, size] = [sphere.radius, sphere.size].map(|number| scene.f32(number));
-    let approach = closest_approach(scene, scene.vec3(sphere.center), radius, size, ray);
+    let [radius, size] = [sphere.radius, sphere.size].map(|number| scene.real(number));
+    let approach = closest_approach(scene, scene.reals(sphere.center), radius, size, ray);
     let reach = sphere.radius + MISS_SLOPE * approach.off;
     !(on & !approach.apart.gt(MISS_GROWTH * reach * reach)).any()
 }
 
 /// See [`all_miss`].
-const MISS_SLOPE: f32 = 1.05;
+const MISS_SLOPE: Number = 1.05;
 /// See [`all_miss`]: 1 + 2⁻¹⁶.
-const MISS_GROWTH: f32 = 1.0 + 1.0 / 65_536.0;
+const MISS_GROWTH: Number = 1.0 + 1.0 / 65_536.0;
 
 /// Nothing, perhaps something, or something stands in range: 0, 1, 2.
 fn any_hit<'a, S: Simd>(
@@ -195,7 +195,7 @@ pub(super) fn shadow<'a, S: Simd>(
     }
     let found = any_hit(scene, on, ray, range);
     let mut shadow = Shadow::zero(scene.simd);
-    shadow.transmittance = scene.vec3([1.0; 3]);
+    shadow.transmittance = Vec3::splat(scene.real(1.0));
     shadow.open = found.ne(scene.u32(2));
     shadow.sure = found.ne(scene.u32(1));
     shadow

@@ -23,3 +23,13 @@ pub(super) mod text;
 mod walk;
 
 pub(super) use walk::MOST_DEPTH;
+
+use crate::certify::lanes::scene;
+use crate::certify::lanes::vector::F as Real;
+use crate::shader::format::Single;
+use crate::shader::records;
+
+/// A number that all lanes share.
+type Number = f32;
+/// The scene in f32.
+type Scene<'a, S> = scene::Scene<'a, S, Single>;

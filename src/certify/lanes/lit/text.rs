@@ -5,11 +5,9 @@ use std::mem::offset_of;
 
 use fearless_simd::Simd;
 
-use super::by_hand;
+use super::{Scene, by_hand, records};
 use crate::certify::lanes::gather::Gather;
-use crate::certify::lanes::scene::Scene;
 use crate::certify::lanes::vector::*;
-use crate::shader::records;
 
 /// What the text refers to by name.
 pub(super) mod constants {
@@ -69,7 +67,7 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const HALF_ROUNDINGS: f32 = 2.5;
     pub(in crate::certify::lanes) const MOST_SHININESS: f32 = 1048576.0;
     pub(in crate::certify::lanes) const APART_ROUNDINGS: f32 = 14.0;
-    pub(in crate::certify::lanes) const LOG_ROUNDINGS: f32 = 19.5;
+    pub(in crate::certify::lanes) const LOG_ROUNDINGS: f32 = 16.5;
     pub(in crate::certify::lanes) const POWER_ROUNDINGS: f32 = 25.0;
     pub(in crate::certify::lanes) const SUM_ROUNDINGS: f32 = 3.0;
     pub(in crate::certify::lanes) const SHARE_ROUNDINGS: f32 = 13.5;
@@ -792,21 +790,21 @@ pub(super) fn sphere_normal_from<'a, S: Simd>(
         sphere.f32(offset_of!(records::WorldSphere, size)),
         ray,
     );
-    let disc = (sphere.f32(offset_of!(records::WorldSphere, radius))
+    let disc = sphere.f32(offset_of!(records::WorldSphere, radius))
         * sphere.f32(offset_of!(records::WorldSphere, radius))
-        - approach.apart)
-        .max(scene.f32(constants::TINY_SQUARE));
-    let inverse_root = disc.inverse_sqrt();
-    let root = disc * inverse_root;
-    let normal = (approach.perpendicular + root * ray.dir)
-        * -sphere.f32(offset_of!(records::WorldSphere, inverse_radius));
+        - approach.apart;
     let disc_error = approach.off
         * (constants::SQUARE_SLOPE * approach.apart.sqrt() + approach.off)
         + constants::DISC_ROUNDINGS
             * constants::U
             * sphere.f32(offset_of!(records::WorldSphere, radius))
             * sphere.f32(offset_of!(records::WorldSphere, radius));
-    let error = root_error(scene, disc, disc_error, inverse_root);
+    let least = disc.max(disc_error);
+    let inverse_root = least.inverse_sqrt();
+    let root = least * inverse_root;
+    let normal = (approach.perpendicular + root * ray.dir)
+        * -sphere.f32(offset_of!(records::WorldSphere, inverse_radius));
+    let error = root_error(scene, least, disc_error, inverse_root);
     let reach_error = error + constants::ROOT_ROUNDINGS * constants::U * root;
     let error_2 = constants::SECOND_ORDER * (approach.off + reach_error + root * ray.dir_error);
     let normal_2 = unit_normal(
@@ -1946,7 +1944,8 @@ pub(super) fn power<'a, S: Simd>(scene: &'a Scene<'a, S>, y: F<S>, n: F<S>) -> V
     let m = (x.signed_bits() - (e << 23)).float();
     let z = e.eq(scene.i32(0)).select(y, 1.0 - m) / (1.0 + m);
     let z2 = z * z;
-    let log = e.as_f32() - 2.88539 * z * (1.0 + z2 * (0.33333334 + z2 * (0.2 + z2 * 0.14285715)));
+    let part_of_log = 2.88539 * z * (1.0 + z2 * (0.33333334 + z2 * (0.2 + z2 * 0.14285715)));
+    let log = e.as_f32() - part_of_log;
     let q = (n * log).max(scene.f32(-100.0));
     let whole = q.round();
     let w = (q - whole) * 0.6931472;

@@ -8,19 +8,19 @@ use fearless_simd::Simd;
 use super::by_hand::Tree;
 use super::text::SecondaryRay;
 use super::text::constants::{BOX_ROUNDINGS, BVH_FAR, BVH_NEAR, SECOND_ORDER, U};
-use crate::certify::lanes::scene::Scene;
+use super::{Real, Scene};
 #[cfg(test)]
 use crate::certify::lanes::tests::{self, Fault};
-use crate::certify::lanes::vector::{F, M, Vec3};
+use crate::certify::lanes::vector::{M, Vec3};
 
 /// Boxes wait at most so many: trees are no deeper.
 pub(in crate::certify::lanes) const MOST_DEPTH: usize = 128;
 
 pub(super) struct Walk<S: Simd> {
-    base: Vec3<F<S>>,
-    inverse: Vec3<F<S>>,
+    base: Vec3<Real<S>>,
+    inverse: Vec3<Real<S>>,
     /// What the boxes are widened by, as rays are not known exactly.
-    pad: F<S>,
+    pad: Real<S>,
     waiting: [u32; MOST_DEPTH],
     count: usize,
 }
@@ -28,7 +28,7 @@ pub(super) struct Walk<S: Simd> {
 impl<S: Simd> Walk<S> {
     #[inline(always)]
     pub(super) fn new<'a>(scene: &'a Scene<'a, S>, tree: Tree, ray: SecondaryRay<S>) -> Self {
-        let tiny = scene.f32(1e-20);
+        let tiny = scene.real(1e-20);
         let inverse = ray
             .dir
             .map(|along| 1.0 / along.abs().lt(tiny).select(tiny, along));
@@ -53,7 +53,7 @@ impl<S: Simd> Walk<S> {
         &mut self,
         scene: &'a Scene<'a, S>,
         on: M<S>,
-        reach: F<S>,
+        reach: Real<S>,
     ) -> Option<Range<usize>> {
         #[cfg(test)]
         let on = tests::inverted(Fault::BoxInverted, on);
@@ -67,7 +67,7 @@ impl<S: Simd> Walk<S> {
                     return Some(first..first + node.count as usize);
                 }
                 let [left, right] = [0, 1].map(|child| self.enters(scene, node.first + child));
-                let goes = |near: F<S>| on & near.ge(scene.f32(0.0)) & near.le(reach);
+                let goes = |near: Real<S>| on & near.ge(scene.real(0.0)) & near.le(reach);
                 let (go_left, go_right) = (goes(left), goes(right));
                 match (go_left.any(), go_right.any()) {
                     (true, true) => {
@@ -90,16 +90,16 @@ impl<S: Simd> Walk<S> {
 
     /// Where rays enter a box, in units of their directions; negative where they do not.
     #[inline(always)]
-    fn enters<'a>(&self, scene: &'a Scene<'a, S>, index: u32) -> F<S> {
+    fn enters<'a>(&self, scene: &'a Scene<'a, S>, index: u32) -> Real<S> {
         let node = &scene.bvh[index as usize];
         let pad = Vec3::splat(self.pad);
-        let a = (scene.vec3(node.min) - self.base - pad) * self.inverse;
-        let b = (scene.vec3(node.max) - self.base + pad) * self.inverse;
+        let a = (scene.reals(node.min) - self.base - pad) * self.inverse;
+        let b = (scene.reals(node.max) - self.base + pad) * self.inverse;
         let low = a.zip(b, |a, b| a.min(b));
         let high = a.zip(b, |a, b| a.max(b));
-        let near = low.x.max(low.y).max(low.z.max(scene.f32(0.0)));
+        let near = low.x.max(low.y).max(low.z.max(scene.real(0.0)));
         let far = high.x.min(high.y).min(high.z);
         near.le(far * BVH_FAR)
-            .select(near * BVH_NEAR, scene.f32(-1.0))
+            .select(near * BVH_NEAR, scene.real(-1.0))
     }
 }

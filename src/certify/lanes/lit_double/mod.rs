@@ -1,0 +1,94 @@
+//! Scenes with lights, in f64: pixels of a list.
+
+#[allow(
+    clippy::duplicate_mod,
+    reason = "it is about the types of the text beside it"
+)]
+#[path = "../lit/by_hand.rs"]
+mod loops;
+#[allow(
+    clippy::duplicate_mod,
+    reason = "it is about the types of the text beside it"
+)]
+#[path = "../primary.rs"]
+mod primary;
+#[allow(
+    clippy::all,
+    unused,
+    unused_comparisons,
+    reason = "it is written by a program"
+)]
+mod text;
+#[cfg(test)]
+mod values;
+#[allow(
+    clippy::duplicate_mod,
+    reason = "it is about the types of the text beside it"
+)]
+#[path = "../lit/walk.rs"]
+mod walk;
+
+use fearless_simd::Simd;
+
+use crate::certify::lanes::scene;
+#[cfg(test)]
+use crate::certify::lanes::tests::{self, Fault};
+use crate::certify::lanes::vector::{D as Real, I, Vec2};
+use crate::shader::format::Double;
+use crate::shader::records::wide as records;
+
+/// A number that all lanes share.
+type Number = f64;
+/// The scene in f64.
+type Scene<'a, S> = scene::Scene<'a, S, Double>;
+
+/// What the text calls that is written by hand.
+mod by_hand {
+    use fearless_simd::Simd;
+
+    use super::Scene;
+    pub(super) use super::loops::*;
+    use crate::certify::lanes::vector::{D, U};
+
+    /// The f64 of two words, the lower half first.
+    #[inline(always)]
+    pub(super) fn double_of<'a, S: Simd>(_: &'a Scene<'a, S>, low: U<S>, high: U<S>) -> D<S> {
+        D::of_halves(low, high)
+    }
+}
+
+/// Traces the pixels of a list, as many as there are lanes at most: of each its bytes, red lowest, or OPEN.
+pub(super) fn pixels<S: Simd>(scene: &Scene<'_, S>, places: &[[u32; 2]], words: &mut [u32]) {
+    scene.simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut state = text::State::new(scene.simd);
+            let width = I::<S>::LANES;
+            for (places, words) in places.chunks(width).zip(words.chunks_mut(width)) {
+                let traced = traced(scene, &mut state, places);
+                let word = text::camera_setpix(scene, traced.color, traced.error) | traced.verdict;
+                words.copy_from_slice(&word.as_slice()[..words.len()]);
+                #[cfg(test)]
+                if words.len() > 1 && tests::is_wrong(Fault::PixelsSwapped) {
+                    words.swap(0, 1);
+                }
+            }
+        },
+    );
+}
+
+/// What the rays of pixels bring, a lane each.
+#[inline(always)]
+fn traced<S: Simd>(
+    scene: &Scene<'_, S>,
+    state: &mut text::State<S>,
+    places: &[[u32; 2]],
+) -> text::Traced<S> {
+    let lane = I::from_fn(scene.simd, |lane| lane as i32);
+    let on = lane.lt(scene.i32(places.len() as i32));
+    // What is off looks where the last one does.
+    let place = |lane: usize| places[lane.min(places.len() - 1)];
+    let pixel = Vec2::new(0, 1).map(|part| I::from_fn(scene.simd, |lane| place(lane)[part] as i32));
+    let middle = Vec2::splat(scene.real(0.0));
+    text::ray_trace(scene, state, on, text::camera_getdir(scene, pixel, middle))
+}
