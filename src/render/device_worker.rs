@@ -83,6 +83,8 @@ pub(super) struct DeviceWorker<'a, 'r> {
     patience: Duration,
     /// Pixels that f64 was asked for.
     listed: u64,
+    /// Pixels that were left to the CPU.
+    refined: u64,
 }
 
 impl<'a, 'r> DeviceWorker<'a, 'r> {
@@ -96,6 +98,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             thread: Phases::default(),
             patience: patience(),
             listed: 0,
+            refined: 0,
         }
     }
 
@@ -281,6 +284,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     self.beside.kernel += rendered.kernel;
                     self.beside.kernel_f64 += rendered.double;
                     self.listed += rendered.listed;
+                    let doubtful = rendered.doubtful.len() as u64;
                     let rows = rendered.band.rows.clone();
                     if !bag.wants(&rows) {
                         continue;
@@ -295,6 +299,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     match finished {
                         Ok(finished) => {
                             checked += finished.spot_checks;
+                            self.refined += doubtful;
                             bag.deliver(finished);
                             self.weigh(double, checked);
                         }
@@ -332,11 +337,16 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
     }
 
     /// Leaves pixels to the CPU where that decides them in less time: there are GPUs on which f64 takes 64 times what
-    /// f32 takes. What the CPU would take is what it takes for a pixel that it checks.
+    /// f32 takes. What the CPU would take is what it takes for those that are left to it, if these are enough to tell:
+    /// it decides many at once; else what it takes for one that it checks.
     fn weigh(&self, double: Option<&DoubleStage>, checked: u64) {
         let a_pixel = |seconds: f64, pixels: u64| seconds / pixels.max(1) as f64;
         let device = a_pixel(self.beside.kernel_f64, self.listed);
-        let cpu = a_pixel(self.beside.spot_checks, checked);
+        let cpu = if self.refined >= WEIGHED {
+            a_pixel(self.beside.refine, self.refined)
+        } else {
+            a_pixel(self.beside.spot_checks, checked)
+        };
         if let Some(double) = double
             && self.listed >= WEIGHED
         {
