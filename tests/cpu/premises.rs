@@ -97,7 +97,9 @@ fn constants(file: &str) -> Vec<Stands> {
         let (name, written) = rest.strip_suffix(';')?.split_once(" = ")?;
         let (name, kind) = name.split_once(": ").unwrap_or((name, ""));
         let whole = written.ends_with('u') || written.contains("vec");
-        let float = ["f64", "f32"].contains(&kind) || (kind.is_empty() && file.ends_with(".wgsl"));
+        // `Number` is what a format's numbers are.
+        let float = ["f64", "f32", "Number"].contains(&kind)
+            || (kind.is_empty() && file.ends_with(".wgsl"));
         (float && !whole).then(|| Stands {
             name: name.to_owned(),
             value: value(written).unwrap_or_else(|| panic!("{file}: {line}")),

@@ -10,17 +10,17 @@ use plumb::render::{Backend, SamplePattern, Settings};
 use plumb::scene::Scene;
 
 use crate::common;
-use crate::doubles::with_doubles;
+use crate::doubles::{with_doubles, with_lanes};
 use crate::oracle::{self, Answer, Failure, Fault, Rules, differences, picture, pixels_of};
 
 /// Scenes that need more rays than a sample may have, unless paths are as short as this.
 const MANY_RAYS: &[(&str, f64)] = &[("lit_half_mirrors_three", 7.0)];
 
 /// Without being asked for full sizes, the GPU's f64 gets one scene in so many.
-const ONE_IN_F64: u32 = 5;
+const ONE_IN_F64: u32 = 8;
 
 /// Pixels of a picture that is not made smaller.
-const SMALL: u32 = 13_000;
+const SMALL: u32 = 8_000;
 
 fn name(path: &Path) -> String {
     path.file_stem().unwrap().display().to_string()
@@ -64,6 +64,12 @@ fn complaints(scene: &Scene, answer: &Answer, settings: &Settings, in_f64: bool)
     let mut found: Vec<String> = differences(scene, answer, &rgb).collect();
     if in_f64 && let Some(rgb) = with_doubles(scene, settings, &rgb) {
         found.extend(differences(scene, answer, &rgb));
+    }
+    if settings.backend == Backend::Cpu {
+        for (by, rgb) in with_lanes(scene, settings, &rgb) {
+            let all = differences(scene, answer, &rgb);
+            found.extend(all.map(|complaint| format!("{by}: {complaint}")));
+        }
     }
     let undecided = answer.pixels.iter().filter(|pixel| pixel.is_err()).count();
     if undecided > 0 {

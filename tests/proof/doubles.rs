@@ -1,7 +1,9 @@
-//! The GPU in f64: pixels that f32 leaves in doubt, decided by the same shader with other numbers. They are held to the
+//! f64, on the GPU and on the CPU's lanes: pixels decided by the same text with other numbers. They are held to the
 //! oracle with all others (`certified`, `random_scenes`); here is how they come about, what of them is left, and that a
 //! bound that is missing is noticed.
 
+use plumb::certify::lanes::OPEN;
+use plumb::certify::lanes::doubles::DoubleLanes;
 use plumb::certify::trust;
 use plumb::gpu::adapters;
 use plumb::gpu::bands;
@@ -88,6 +90,34 @@ pub(crate) fn with_doubles(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Op
         rgb.as_chunks_mut().0[place] = bytes;
     }
     Some(rgb)
+}
+
+/// The picture once more for each kind of vectors that hold four f64 or more, with the bytes of all pixels that the CPU's
+/// f64 is sure of, not only of those that f32 leaves in doubt.
+pub(crate) fn with_lanes(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Vec<(String, Vec<u8>)> {
+    if !DoubleLanes::may_be(scene, settings) {
+        return Vec::new();
+    }
+    let [width, height] = scene.camera.pixeldim;
+    let places: Vec<[u32; 2]> = (0..height)
+        .rev()
+        .flat_map(|y| (0..width).map(move |x| [x, y]))
+        .collect();
+    let picture = |(name, lanes): (&str, DoubleLanes)| {
+        let mut words = vec![OPEN; places.len()];
+        lanes.pixels(&places, &mut words);
+        let mut rgb = rgb.to_vec();
+        for (pixel, word) in rgb.chunks_mut(3).zip(&words) {
+            if *word < OPEN {
+                pixel.copy_from_slice(&word.to_le_bytes()[..3]);
+            }
+        }
+        (format!("f64 with {name}"), rgb)
+    };
+    let all = DoubleLanes::new(scene, settings).into_iter();
+    all.flat_map(DoubleLanes::with_each_vector)
+        .map(picture)
+        .collect()
 }
 
 /// A scene of a folder, at this size or its own; and how it is rendered.

@@ -22,15 +22,15 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use crate::common;
-use crate::doubles::with_doubles;
+use crate::doubles::{self, with_doubles};
 use crate::oracle::{self, Answer, Failure, Rules};
 use strategy::{Plan, plan};
 
 /// Scenes tried without being asked for more.
-const SCENES: u64 = 300;
+const SCENES: u64 = 200;
 
 /// Without being asked for a number, the GPU gets one scene in so many: it compiles a shader for each.
-const ONE_FOR_THE_GPU: u64 = 5;
+const ONE_FOR_THE_GPU: u64 = 8;
 
 /// A pixel that takes more rays, or more mirrors one after another, is not compared: it would take the oracle minutes.
 const MOST_RAYS: u32 = 1_000;
@@ -108,7 +108,9 @@ fn try_scene(plan: &Plan, gpu_too: bool) -> Tried {
         tried.pixels += answer.pixels.len() - tried.skipped;
         let mut pictures = vec![(format!("{backend:?}"), rgb)];
         if backend == Backend::Cpu {
+            let in_f64 = doubles::with_lanes(&scene, &wanted, &pictures[0].1);
             pictures.extend(with_lanes(&scene, &wanted, &pictures[0].1));
+            pictures.extend(in_f64);
         }
         if backend == Backend::Gpu {
             let doubled = with_doubles(&scene, &wanted, &pictures[0].1);
