@@ -1,5 +1,6 @@
 //! What decides a pixel on the CPU: which numbers decide what, that bounds hold, and that a broken one is noticed.
 
+use std::cmp::Ordering;
 use std::path::Path;
 
 use plumb::cpu::pixel::ExactTracer;
@@ -7,7 +8,7 @@ use plumb::cpu::trace::{Limits, Unobserved, ray_trace};
 use plumb::frame::{DecidedBy, Part};
 use plumb::jitter::{self, Sampling};
 use plumb::prepare::{Prepared, ViewParameters};
-use plumb::real::{Bounded, Lazy, Real};
+use plumb::real::{Bounded, Lazy, Pair, Real};
 use plumb::scene::{Scene, load_from};
 use plumb::settings::{Backend, Precision, Settings};
 
@@ -82,6 +83,53 @@ fn f64_bounds_contain_the_exact_values() {
 #[test]
 fn a_bound_of_zero_is_noticed() {
     let (off, all, _) = off(0.0);
+    assert!(off > 100, "{off} of {all}");
+}
+
+/// The same of pairs of f64, in lit scenes, where they are asked: their bounds are so small that only exact signs tell.
+fn off_pairs(scale: f64) -> (usize, usize, usize) {
+    let (mut off, mut all, mut useless) = (0, 0, 0);
+    for path in common::good_scenes() {
+        let scene = common::read(&path);
+        if scene.lights.is_empty() || path.ends_with("lit_thousand_panes.txt") {
+            continue;
+        }
+        let bounds = Prepared::<Bounded>::new(&scene, 0.0);
+        let pairs = Prepared::<Pair>::new(&scene, 0.0);
+        Lazy::clear();
+        let view = ViewParameters::from(0.0);
+        let exact = Prepared::again(&scene, view, &bounds, &bounds.sources(&scene, view));
+        let end = Lazy::mark();
+        let [width, height] = scene.camera.pixeldim;
+        for i in 0..3 {
+            let (x, y) = (i * 7919 % width, i * 104_729 % height);
+            let (Some(value), Some(better)) =
+                (color::<Pair>(&pairs, x, y), color::<Lazy>(&exact, x, y))
+            else {
+                Lazy::release(end);
+                continue;
+            };
+            for (value, better) in value.into_iter().zip(better) {
+                let apart = better - Lazy::exact(value.high) - Lazy::exact(value.low);
+                let bound = Lazy::exact(scale * value.error * Bounded::GROW);
+                let beyond = [(apart - bound).sign(), (-apart - bound).sign()];
+                all += 1;
+                off += usize::from(beyond.contains(&Ok(Ordering::Greater)));
+                useless += usize::from(value.error > 1e-24 * value.high.abs() + 1e-28);
+            }
+            Lazy::release(end);
+        }
+    }
+    (off, all, useless)
+}
+
+#[test]
+fn bounds_of_pairs_contain_the_exact_values() {
+    let (off, all, useless) = off_pairs(1.0);
+    assert!(all > 500, "only {all} compared");
+    assert_eq!(off, 0, "of {all}");
+    assert!(useless * 50 < all, "{useless} of {all} bounds say nothing");
+    let (off, all, _) = off_pairs(0.0);
     assert!(off > 100, "{off} of {all}");
 }
 

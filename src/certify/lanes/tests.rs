@@ -98,7 +98,7 @@ pub(super) fn shifted<S: Simd>(fault: Fault, numbers: F<S>) -> F<S> {
     }
 }
 
-const SIZE: [u32; 2] = [33, 23];
+const SIZE: [u32; 2] = [45, 31];
 
 /// A picture, and what is right.
 struct Referee {
