@@ -1,17 +1,16 @@
 //! A pixel in the number types that it takes to be sure of it; `sample` makes it in one of them.
 //!
 //! [`ExactTracer`] decides every pixel with the cheapest numbers that can: f64 that knows its error, pairs of f64, then
-//! numbers that are exact in the end.
+//! numbers that are exact in the end. `first_hit` asks these what a ray meets.
+
+mod first_hit;
 
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec3;
-
-use super::camera::{camera_getdir, camera_setpix, inverse_distance};
-use super::hit_point::hit_point;
+use super::camera::{camera_getdir, camera_setpix};
 use super::sample::{Value, color, make_pixel, mean};
 use super::surface::getamb;
 use super::trace::{Fault, Limits, find_closest_object, locate};
@@ -22,39 +21,7 @@ use crate::prepare::{Prepared, ViewParameters};
 use crate::real::rational::two_to;
 use crate::real::{Bounded, Effort, Lazy, Mark, Pair, Real, Undecided, V3};
 use crate::scene::Scene;
-
-/// What the ray through a place on the screen hits first.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FirstHit {
-    /// Index of the object in the scene.
-    pub object: usize,
-    /// How far that is from the viewpoint, in world units, and how far off this may be: infinite where the hit is
-    /// presumed.
-    pub t: Bounded,
-    /// Where, in world coordinates.
-    pub at: DVec3,
-}
-
-/// The first hit, computed in one number type. Plain f64 takes itself for exact.
-fn first_hit<R: Real>(
-    scene: &Scene,
-    prepared: &Prepared<R>,
-    [x, y]: [f64; 2],
-) -> Result<Option<FirstHit>, Undecided> {
-    let ray = camera_getdir(&prepared.camera, x, y);
-    let hit = find_closest_object(prepared, &ray)?;
-    Ok(hit.map(|hit| {
-        let t = R::exact(1.0) / inverse_distance(&prepared.camera, &ray, hit.inverse);
-        let Bounded { value, error } = t.enclosure();
-        // The bound is kept low by its own roundings until it is used.
-        let error = error * Bounded::GROW;
-        FirstHit {
-            object: hit.object,
-            t: Bounded { value, error },
-            at: hit_point(scene, prepared, &ray, &hit),
-        }
-    }))
-}
+pub use first_hit::FirstHit;
 
 /// The value of pixel (x, y) in one number type, if that suffices to tell what its rays meet.
 pub(crate) fn pixel_value<R: Real>(
@@ -380,26 +347,6 @@ impl<'a> ExactTracer<'a> {
         };
         Lazy::release(end);
         (result, by)
-    }
-
-    /// What the ray through (x, y) hits first, counted from the bottom left, with fractions between pixels, in the
-    /// cheapest numbers that tell; undecided only where exact numbers and f64 both do not.
-    pub fn first_hit(&self, at: [f64; 2]) -> Result<Option<FirstHit>, Undecided> {
-        if let Ok(hit) = first_hit(self.scene, &self.bounded, at) {
-            return Ok(hit);
-        }
-        if let (Ok(hit), _) = self.exactly(|scene| Ok(first_hit(self.scene, scene, at)?)) {
-            return Ok(hit);
-        }
-        let presumed = first_hit(self.scene, self.plain(), at)?;
-        let unknown = |hit: FirstHit| {
-            let error = f64::INFINITY;
-            FirstHit {
-                t: Bounded { error, ..hit.t },
-                ..hit
-            }
-        };
-        Ok(presumed.map(unknown))
     }
 
     /// The scene in f64, for what has to be presumed, and for people to read.

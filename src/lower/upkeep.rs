@@ -6,13 +6,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::texts::{AMBIENT, LIT, LIT_DOUBLE, lowered};
-use crate::cpu::pixel::ExactTracer;
 use crate::procedural::Family;
 use crate::settings::Settings;
 use crate::shader::compose::{Entry, compose_with};
 use crate::shader::feature::Feature;
 use crate::shader::feature_set::{FeatureSet, LitFeatures};
-use crate::shader::format::Double;
 use crate::shader::kind::SurfaceKind;
 use crate::shader::pack::Packed;
 
@@ -99,9 +97,12 @@ fn wgsl(set: &FeatureSet) -> String {
         features.insert(Feature::AnyHit);
     }
     let text = if set.double {
-        let exact_tracer = ExactTracer::new(&scene, settings.view());
-        let packed = Packed::<Double>::rounded(exact_tracer.pairs(), &scene, &settings);
-        compose_with(&packed, set, &features, Entry::Pixel)
+        compose_with(
+            &Packed::in_f64(&scene, &settings),
+            set,
+            &features,
+            Entry::Pixel,
+        )
     } else {
         compose_with(
             &Packed::new(&scene, &settings),

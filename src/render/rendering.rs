@@ -11,8 +11,6 @@ use crate::certify::lanes::{LANES, Lanes};
 use crate::certify::pixels::PixelDecider;
 use crate::frame::StopRequested;
 use crate::jitter::Jitter;
-use crate::prepare::Prepared;
-use crate::real::Pair;
 use crate::scene::Scene;
 use crate::shader::format::Double;
 use crate::shader::pack::Packed;
@@ -162,8 +160,7 @@ impl<'a> Rendering<'a> {
 
     /// The scene rounded to f64, for devices that have it.
     pub(super) fn packed_in_f64(&self) -> Packed<Double> {
-        let prepared = Prepared::<Pair>::new(self.scene, self.settings.view());
-        Packed::rounded(&prepared, self.scene, self.settings)
+        Packed::in_f64(self.scene, self.settings)
     }
 
     /// What the CPU does as many pixels at once as its vectors hold, if it does.

@@ -9,7 +9,6 @@ use plumb::gpu::adapters;
 use plumb::gpu::bands;
 use plumb::gpu::double::{DoubleStage, can_be};
 use plumb::gpu::pipeline::Pipeline;
-use plumb::prepare::Prepared;
 use plumb::render::{Backend, Settings};
 use plumb::scene::Scene;
 use plumb::shader::compose::{Entry, compose};
@@ -48,8 +47,7 @@ fn doubled_by(
     let packed = Packed::new(scene, settings);
     let features = FeatureSet::new(&packed, settings, gpu.lanes);
     let features = features.for_a_file(gpu.software).with_a_list();
-    let prepared = Prepared::new(scene, settings.view());
-    let in_f64 = Packed::<F64>::rounded(&prepared, scene, settings);
+    let in_f64 = Packed::in_f64(scene, settings);
     if !features.is_listed() || packed.unprovable.is_some() || !can_be(&packed, &in_f64) {
         return None;
     }
@@ -174,8 +172,7 @@ fn many_objects_have_no_stage() {
     let on_demand = Packed::<F64>::rounded(tracer.pairs(), &scene, &settings);
     assert!(!can_be(&single, &on_demand));
     // Prepared as f32's are, they are the same.
-    let prepared = Prepared::new(&scene, settings.view());
-    let whole = Packed::<F64>::rounded(&prepared, &scene, &settings);
+    let whole = Packed::in_f64(&scene, &settings);
     assert_eq!(single.counts(), whole.counts());
     assert!(can_be(&single, &whole));
 }

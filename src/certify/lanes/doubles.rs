@@ -6,8 +6,6 @@ use fearless_simd::{Level, Simd};
 use super::lit_double;
 use super::scene::{Buffers, Numbers, Scene, numbers};
 use super::{has_all_that_is_asked, may_be};
-use crate::prepare::Prepared;
-use crate::real::Pair;
 use crate::scene::Scene as Model;
 use crate::settings::{Precision, Settings};
 use crate::shader::format::Double;
@@ -43,8 +41,7 @@ impl DoubleLanes {
             precision: Precision::Certified,
             ..settings.clone()
         };
-        let prepared = Prepared::<Pair>::new(scene, settings.view());
-        let packed = Packed::<Double>::rounded(&prepared, scene, settings);
+        let packed = Packed::in_f64(scene, settings);
         if !may_be(&packed) {
             return None;
         }

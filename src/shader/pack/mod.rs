@@ -21,7 +21,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, round_up};
-use super::format::{Format, Known, Single};
+use super::format::{Double, Format, Known, Single};
 use super::kind::SurfaceKind;
 use super::records::PackedCamera;
 use super::records::wide::{
@@ -100,6 +100,13 @@ impl Packed {
     /// Rounds a scene to f32 that has been prepared as the settings say.
     pub fn prepared(prepared: &Prepared<Bounded>, scene: &Scene, settings: &Settings) -> Self {
         Self::rounded(prepared, scene, settings)
+    }
+}
+
+impl Packed<Double> {
+    /// Prepares a scene in pairs of f64, as a whole, and rounds it to f64.
+    pub fn in_f64(scene: &Scene, settings: &Settings) -> Self {
+        Self::rounded(&Prepared::new(scene, settings.view()), scene, settings)
     }
 }
 

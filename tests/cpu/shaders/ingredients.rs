@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use plumb::prepare::Prepared;
 use plumb::procedural::{PPLANE_SHADERS, PSPHERE_SHADERS};
 use plumb::render::{Precision, SamplePattern, Settings};
 use plumb::scene::{
@@ -12,7 +11,6 @@ use plumb::scene::{
 };
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
-use plumb::shader::format::Double;
 use plumb::shader::pack::Packed;
 
 use crate::common::light;
@@ -339,8 +337,7 @@ pub(super) fn doubled(chosen: &[Ingredient]) -> Option<[String; 2]> {
     let (scene, settings) = (scene(chosen), settings(chosen));
     let (packed, features) = packed(chosen);
     let features = features.for_a_file(true).with_a_list();
-    let double =
-        Packed::<Double>::rounded(&Prepared::new(&scene, settings.view()), &scene, &settings);
+    let double = Packed::in_f64(&scene, &settings);
     features.is_listed().then(|| {
         [
             compose(&packed, &features, Entry::Picture),
