@@ -17,7 +17,7 @@ use crate::oracle::{self, Answer, Failure, Fault, Rules, differences, picture, p
 const MANY_RAYS: &[(&str, f64)] = &[("lit_half_mirrors_three", 7.0)];
 
 /// Without being asked for full sizes, the GPU gets one scene in so many, as compiling its shader takes longer than all
-/// else: `gpu_vs_cpu` and `drivers` render the others.
+/// else: `tests/gpu/drivers.rs` renders the others.
 const ONE_ON_GPU: u32 = 2;
 
 /// The same of the GPU's f64.

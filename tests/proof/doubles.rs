@@ -153,8 +153,8 @@ fn little_is_left_behind_f64() {
     }
 }
 
-/// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: such a
-/// scene has no stage in f64.
+/// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: what is
+/// packed of them has no stage in f64. `Packed::in_f64` prepares them all.
 #[test]
 fn many_objects_have_no_stage() {
     let mut text = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
