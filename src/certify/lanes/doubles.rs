@@ -5,7 +5,7 @@ use fearless_simd::{Level, Simd};
 
 use super::lit_double;
 use super::scene::{Buffers, Numbers, Scene, numbers};
-use super::{has_all_that_is_asked, may_be};
+use super::{buffers, may_be};
 use crate::scene::Scene as Model;
 use crate::settings::{Precision, Settings};
 use crate::shader::format::Double;
@@ -46,7 +46,7 @@ impl DoubleLanes {
             return None;
         }
         let mut numbers = numbers(&packed, settings);
-        let buffers = has_all_that_is_asked(&packed, &mut numbers);
+        let buffers = buffers(&packed, &mut numbers);
         Some(Self {
             packed,
             numbers,

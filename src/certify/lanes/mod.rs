@@ -84,7 +84,7 @@ impl Lanes {
             return None;
         }
         let mut numbers = numbers(&packed, settings);
-        let buffers = has_all_that_is_asked(&packed, &mut numbers);
+        let buffers = buffers(&packed, &mut numbers);
         Some(Self {
             numbers,
             buffers,
@@ -204,10 +204,7 @@ fn may_be<X: LaneFormat>(packed: &Packed<X>) -> bool {
 
 /// The buffers that the text asks for, whether the scene has tables or not: it reads beyond the last object then, and
 /// finds that there is none.
-fn has_all_that_is_asked<X: LaneFormat>(
-    packed: &Packed<X>,
-    numbers: &mut Numbers<X::Real>,
-) -> Buffers<X> {
+fn buffers<X: LaneFormat>(packed: &Packed<X>, numbers: &mut Numbers<X::Real>) -> Buffers<X> {
     let mut buffers = Buffers {
         objects: binding::objects(packed),
         lit_objects: binding::lit_objects(packed),

@@ -57,7 +57,7 @@ mod by_hand {
     }
 }
 
-/// Traces the pixels of a list, as many as there are lanes at most: of each its bytes, red lowest, or OPEN.
+/// Traces the pixels of a list, as many at once as there are lanes: of each its bytes, red lowest, or OPEN.
 pub(super) fn pixels<S: Simd>(scene: &Scene<'_, S>, places: &[[u32; 2]], words: &mut [u32]) {
     scene.simd.vectorize(
         #[inline(always)]
@@ -77,7 +77,7 @@ pub(super) fn pixels<S: Simd>(scene: &Scene<'_, S>, places: &[[u32; 2]], words: 
     );
 }
 
-/// What the rays of pixels bring, a lane each.
+/// What the rays of pixels bring, a lane each: of one to as many as there are.
 #[inline(always)]
 fn traced<S: Simd>(
     scene: &Scene<'_, S>,
