@@ -11,13 +11,13 @@ struct Dispatch {
 //#if records
 
 // Behind the dispatch's pixels comes a list without order of those that are in doubt: records of RECORD_WORDS words.
-// They hold the place; where only some samples are sure, the sum of such samples, its error, the bits of the samples in
-// it; else what becomes of the pixel. The list is in one buffer with the pixels, since a driver may allow no more
-// buffers than a scene needs anyway.
+// They hold the place and what becomes of the pixel in f64; with several samples also the sum of those that are worth
+// keeping, its error, and the bits of the samples in it. The list is in one buffer with the pixels, since a driver may
+// allow no more buffers than a scene needs anyway.
 struct Pixels {
     // Records, those for which there was no room too.
     records: atomic<u32>,
-    // Workgroups that take them all.
+    // Workgroups that take those that f64 is to take.
     groups: atomic<u32>,
     words: array<u32>,
 }
@@ -42,19 +42,22 @@ fn record_words(record: u32) -> u32 {
 //#end
 }
 //#end
-//#if listed
+//#if records
 
-// Lists a pixel in doubt.
-fn list_doubt(pixel: vec2i) {
-    let place = vec2u(vec2i(pixel.x - i32(dispatch.first.x), i32(dispatch.first.y) - pixel.y));
-    if place.x >= dispatch.size.x {
-        return;
-    }
+// Where the words of a new record begin, of the pixel at this place; 0 where there is no room.
+fn new_record(place: u32) -> u32 {
     let record = atomicAdd(&pixels.records, 1u);
+    var first = 0u;
     if record < dispatch.room {
-        atomicMax(&pixels.groups, record / LIST_GROUP + 1u);
-        pixels.words[record_words(record)] = place.y * dispatch.size.x + place.x;
-        pixels.words[record_words(record) + 1u] = UNDECIDED;
+        first = record_words(record);
+//#if listed
+        if record < dispatch.taken {
+            atomicMax(&pixels.groups, record / LIST_GROUP + 1u);
+        }
+//#end
+        pixels.words[first] = place;
+        pixels.words[first + 1u] = UNDECIDED;
     }
+    return first;
 }
 //#end

@@ -156,7 +156,7 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
             (*traced).verdict = UNDECIDED;
             break;
         }
-        steps += 2u;
+        steps += 2u * APART;
         let material = materials[objects[at.point.object].material];
         let lit = shade(at.point, branch.ray);
         branch.total += at.t;
@@ -256,10 +256,10 @@ fn follow(traced: ptr<function, Traced>, primary: SecondaryRay, first: PathPoint
         }
         rays += 1u;
 //#if certified
-        let hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), 1u);
+        let hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX, 0.0, 0.0), APART);
         doubt |= !surely_closest(hit) | (branch.ray.dir_error > DIR_LIMIT);
 //#else
-        let hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX), 1u);
+        let hit = closest_hit(branch.ray, Range(branch.last, 0u, 0.0, T_MAX), APART);
 //#end
 //#end
 //#if certified

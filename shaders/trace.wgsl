@@ -4,7 +4,9 @@
 // Iterations of the loops so far, of all samples, the last one of each, which only finds the end, included: the driver
 // may end loops early that go round too often (lavapipe counts 65,535 for all loops together, and for all invocations
 // that it runs as the lanes of one vector), so a pixel that comes near is handed to the CPU. Loops that go round
-// differently in different lanes count for all LANES.
+// differently in different lanes count for all LANES. Those that go on for as long as the path does count once where a
+// pixel has one sample, as the lane with the longest path goes along all the way; of several samples each may take
+// longest in another lane, and they count APART times.
 var<private> steps: u32;
 const STEPS_LIMIT = 50000u;
 //#end
@@ -14,9 +16,9 @@ const STEPS_LIMIT = 50000u;
 fn shade(point: Point, seen: SecondaryRay) -> Shade {
     var sum = getamb(point);
     let diffuse = getdiff(point);
-    steps += 1u;
+    steps += APART;
     for (var i = 0u; i < LIGHTS; i += 1u) {
-        steps += 1u + SHADOW_STEPS;
+        steps += APART * (1u + SHADOW_STEPS);
         if steps > STEPS_LIMIT {
             break;
         }
@@ -38,6 +40,14 @@ struct Traced {
     verdict: u32,
 }
 
+//#if partial
+
+// Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.
+fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
+    (*sum).color += select(vec3f(0.0), one.color * SAMPLE_SHARE, counts);
+    (*sum).error += select(vec3f(0.0), one.error * SAMPLE_ERROR, counts) + SAMPLE_ROUNDINGS * U * (*sum).color;
+}
+//#end
 //#if any_object
 //#if certified
 

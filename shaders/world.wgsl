@@ -72,9 +72,10 @@ const T_MAX = 1e30f;
 fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersection, object: u32, group: u32,
     range: Range) {
 //#if certified
-//#if triangle_tree
-    // What the tree holds is not in the order of the file: what comes before the closest on its surface is a rival.
-    let fresh = (group != (*closest).group) | (object < (*closest).object);
+//#if unordered
+    // What comes before the closest on its surface, in the file, and not here, takes its place.
+    let same = group == (*closest).group;
+    let fresh = !same | (object < (*closest).object);
 //#else
     let fresh = group != (*closest).group;
 //#end
@@ -85,9 +86,15 @@ fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersec
     possible &= from_start | (intersection.high - range.beyond > -range.beyond_error);
     hit &= from_start | (intersection.low - range.beyond > range.beyond_error);
 //#end
-    let takes = hit & (intersection.t < (*closest).t);
     let low = select(T_MAX, intersection.low, possible);
-    (*closest).rival = min((*closest).rival, select(low, (*closest).low, takes));
+//#if unordered
+    let takes = hit & ((intersection.t < (*closest).t) | same);
+    let rival = select(low, select((*closest).low, T_MAX, same), takes);
+//#else
+    let takes = hit & (intersection.t < (*closest).t);
+    let rival = select(low, (*closest).low, takes);
+//#end
+    (*closest).rival = min((*closest).rival, rival);
     (*closest).low = select((*closest).low, low, takes);
     (*closest).error = select((*closest).error, intersection.error, takes);
     (*closest).group = select((*closest).group, group, takes);
@@ -99,7 +106,7 @@ fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersec
     (*closest).object = select((*closest).object, object, takes);
 }
 
-// The first object that the ray meets in range. The rounds of its loops count `weight` times: 1 where all lanes of a
+// The first object that the ray meets in range. The rounds of its loops count `weight` times: APART where all lanes of a
 // vector ask together, LANES where they ask on their own. Certified, whether it is the first for sure is left to
 // `surely_closest`.
 fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {

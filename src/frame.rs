@@ -96,6 +96,13 @@ pub struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// Of a pixel of which nothing is known.
+    pub const NOTHING: Self = Self {
+        sum: [0.0; 3],
+        error: [0.0; 3],
+        summed: &[],
+    };
+
     /// Whether a sample is in the sum.
     pub fn holds(&self, sample: u32) -> bool {
         let word = self.summed.get(sample as usize / 32);

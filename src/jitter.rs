@@ -158,7 +158,19 @@ pub enum Sampling<'a> {
     Given(&'a [[f64; 2]]),
 }
 
-impl Sampling<'_> {
+impl<'a> Sampling<'a> {
+    /// Where the samples of pixel (x, y) are, from its middle.
+    pub fn offsets(self, x: u32, y: u32) -> impl Iterator<Item = [f64; 2]> + use<'a> {
+        let (hashed, given): (u32, &[[f64; 2]]) = match self {
+            Self::Once => (0, &[[0.0; 2]]),
+            Self::Hash(samples) => (samples, &[]),
+            Self::Given(offsets) => (0, offsets),
+        };
+        (0..hashed)
+            .map(move |sample| hash(x, y, sample))
+            .chain(given.iter().copied())
+    }
+
     /// How many rays.
     pub fn samples(&self) -> u32 {
         match self {

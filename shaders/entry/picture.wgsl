@@ -1,13 +1,4 @@
 // The entry point: from pixels to rays, from colours to bytes and verdicts. Referee: src/cpu/pixel.rs.
-//#if partial
-
-// Adds a sample's share to a pixel, if it counts: what a doubtful one brings means nothing.
-fn add_sample(sum: ptr<function, Traced>, one: Traced, counts: bool) {
-    (*sum).color += select(vec3f(0.0), one.color * (1.0 / f32(SAMPLES)), counts);
-    (*sum).error += select(vec3f(0.0), one.error * (SAMPLE_GROWTH / f32(SAMPLES)), counts)
-        + SAMPLE_ROUNDINGS * U * (*sum).color;
-}
-//#end
 //#if packed
 
 // The words of a workgroup: a word of a file's picture holds bytes of pixels that two invocations made.
@@ -30,8 +21,9 @@ fn make_pixel(pixel: vec2i) -> u32 {
 //#if certified
     let bytes = camera_setpix(traced.color, traced.error) | traced.verdict;
 //#if listed
-    if bytes >= UNDECIDED {
-        list_doubt(pixel);
+    let place = vec2u(vec2i(pixel.x - i32(dispatch.first.x), i32(dispatch.first.y) - pixel.y));
+    if (bytes >= UNDECIDED) & (place.x < dispatch.size.x) {
+        new_record(place.y * dispatch.size.x + place.x);
     }
 //#end
     return bytes;
@@ -100,6 +92,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if any_object
 //#if samples
     var traced: Traced;
+    // Samples that were made: a loop that a driver ends makes fewer.
+    var made = 0u;
 //#if partial
     // The same of the samples that are worth keeping should the pixel be doubtful: their bits, and how many they are.
     // What is not among them, for whatever reason, the CPU adds.
@@ -116,6 +110,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let offset = jitter_hash(pixel, sample);
 //#end
         let one = ray_trace(camera_getdir(pixel, offset));
+        made += 1u;
 //#if partial
         let fine = (one.verdict == 0u) & all(one.error < vec3f(FINE));
         add_sample(&traced, one, one.verdict == 0u);
@@ -127,8 +122,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             break;
         }
 //#else
-        traced.color += one.color * (1.0 / f32(SAMPLES));
-        traced.error += one.error * (SAMPLE_GROWTH / f32(SAMPLES)) + SAMPLE_ROUNDINGS * U * traced.color; //~
+        traced.color += one.color * SAMPLE_SHARE;
+        traced.error += one.error * SAMPLE_ERROR + SAMPLE_ROUNDINGS * U * traced.color; //~
         traced.verdict |= one.verdict;
         if traced.verdict != 0u {
             break;
@@ -136,7 +131,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#end
     }
 //#if partial
-    traced.verdict = select(UNDECIDED, 0u, sure == SAMPLES);
+    traced.verdict = select(UNDECIDED, 0u, (sure == SAMPLES) & (made == SAMPLES));
+//#else
+    traced.verdict |= select(UNDECIDED, 0u, made == SAMPLES);
 //#end
 //#else
     let traced = ray_trace(camera_getdir(pixel));
@@ -154,29 +151,34 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let bytes = camera_setpix(traced.color) | traced.verdict;
 //#end
 //#if partial
-    if (bytes >= UNDECIDED) & (kept > 0u) & (kept < SAMPLES) {
-        let record = atomicAdd(&pixels.records, 1u);
-        if record < dispatch.room {
-            let first = record_words(record);
-            let color = bitcast<vec3u>(part.color);
-            let error = bitcast<vec3u>(part.error);
-            pixels.words[first] = place;
-            pixels.words[first + 1u] = color.x;
-            pixels.words[first + 2u] = color.y;
-            pixels.words[first + 3u] = color.z;
-            pixels.words[first + 4u] = error.x;
-            pixels.words[first + 5u] = error.y;
-            pixels.words[first + 6u] = error.z;
+    // Where all samples together do not tell, they are of no use.
+    let useful = kept < SAMPLES;
+//#if listed
+    if bytes >= UNDECIDED {
+//#else
+    if (bytes >= UNDECIDED) & (kept > 0u) & useful {
+//#end
+        let first = new_record(place);
+        if first > 0u {
+            let color = bitcast<vec3u>(select(vec3f(0.0), part.color, useful));
+            let error = bitcast<vec3u>(select(vec3f(0.0), part.error, useful));
+            pixels.words[first + 2u] = color.x;
+            pixels.words[first + 3u] = color.y;
+            pixels.words[first + 4u] = color.z;
+            pixels.words[first + 5u] = error.x;
+            pixels.words[first + 6u] = error.y;
+            pixels.words[first + 7u] = error.z;
             for (var i = 0u; i < SUMMED_WORDS; i += 1u) {
-                pixels.words[first + 7u + i] = summed[i];
+                pixels.words[first + RECORD_HEAD + i] = select(0u, summed[i], useful);
             }
         }
     }
-//#end
+//#else
 //#if listed
     if bytes >= UNDECIDED {
-        list_doubt(pixel);
+        new_record(place);
     }
+//#end
 //#end
 //#if packed
     return bytes;

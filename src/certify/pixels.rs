@@ -12,7 +12,7 @@ use super::{Decided, DecidedBy, Tally};
 use crate::certify::lanes::mean::Means;
 use crate::certify::lanes::{LANES, Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
-use crate::frame::{Band, Halt, StopRequested, spare};
+use crate::frame::{Band, Halt, Part, StopRequested, spare};
 use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::scene::Scene;
@@ -87,7 +87,8 @@ impl<'a> PixelDecider<'a> {
             self.piece(top, offsets, places, (known, decides))
         };
         // The offsets of a row's samples may have to be made for the whole row: once for all its pixels.
-        let rows = places.chunk_by(|a, b| self.cascade.takes_any_rows() || a / width == b / width);
+        let by_rows = matches!(self.jitter, Jitter::Course(_)) || !self.cascade.takes_many();
+        let rows = places.chunk_by(|a, b| !by_rows || a / width == b / width);
         let row = |row: &[u32]| self.jitter.row(top - row[0] / width).map(Arc::new);
         let first = FirstHalt::default();
         let decided: Vec<(Vec<Decided>, Tally)> = if places.len() <= FEW {
@@ -240,26 +241,21 @@ impl<'a> PixelDecider<'a> {
     /// Decides the pixels of a strip, whose row has these offsets.
     fn strip(
         &self,
-        strip: Strip<'_>,
+        mut strip: Strip<'_>,
         offsets: Option<&[[f64; 2]]>,
         lanes: Option<&Lanes>,
     ) -> Result<Tally, Halt> {
         if (self.stop)() {
             return Err(Halt::Stopped);
         }
-        let Strip {
-            first,
-            y,
-            bytes,
-            values,
-            verdicts,
-        } = strip;
+        let (first, y) = (strip.first, strip.y);
         let mut tally = Tally::default();
         let mut quick = 0;
         // What the lanes are sure of, and which pixels they leave open.
-        let mut words = vec![OPEN; bytes.len() / 3];
+        let mut words = vec![OPEN; strip.bytes.len() / 3];
         let mut means = lanes.and_then(Lanes::means);
         let at_once = means.as_ref().map_or(words.len(), Means::at_once);
+        let mut left = Left::default();
         for start in (0..words.len()).step_by(at_once) {
             let group = start..words.len().min(start + at_once);
             let at = [(first + start) as u32, y];
@@ -270,39 +266,99 @@ impl<'a> PixelDecider<'a> {
                     lanes.sampled(at, offsets, &mut words[group.clone()], means);
                 }
             }
-            let mut open = Vec::new();
             for i in group {
                 if words[i] < OPEN {
                     let [red, green, blue, _] = words[i].to_le_bytes();
-                    bytes[3 * i..][..3].copy_from_slice(&[red, green, blue]);
+                    strip.bytes[3 * i..][..3].copy_from_slice(&[red, green, blue]);
                     quick += 1;
-                    if let Some(verdict) = verdicts.get_mut(i) {
+                    if let Some(verdict) = strip.verdicts.get_mut(i) {
                         *verdict = DecidedBy::Single;
                     }
                     continue;
                 }
-                open.push(Open {
-                    at: [(first + i) as u32, y],
-                    sampling: self.jitter.pixel(offsets, self.width, first + i),
-                    part: means.as_ref().and_then(|means| means.part(i - start)),
-                });
+                left.push(i, means.as_ref().and_then(|means| means.part(i - start)));
             }
-            let mut take = |k: usize, decided: Decided, effort: Effort| {
-                let [x, y] = open[k].at;
-                let i = x as usize - first;
-                tally.decided(decided.by, [x, y], effort.samples, Duration::ZERO);
-                bytes[3 * i..][..3].copy_from_slice(&decided.bytes);
-                if let Some(value) = values.get_mut(i) {
-                    *value = decided.value;
-                }
-                if let Some(verdict) = verdicts.get_mut(i) {
-                    *verdict = decided.by;
-                }
-            };
-            self.cascade.decide(&open, Decides::Any, &mut take)?;
+            if left.summed.len() > MOST_SUMMED {
+                self.left(&left, &mut strip, offsets, &mut tally)?;
+                left = Left::default();
+            }
         }
+        self.left(&left, &mut strip, offsets, &mut tally)?;
         tally.add(DecidedBy::Single, quick);
         Ok(tally)
+    }
+
+    /// Decides the pixels of a strip that lanes leave open.
+    fn left(
+        &self,
+        left: &Left,
+        strip: &mut Strip<'_>,
+        offsets: Option<&[[f64; 2]]>,
+        tally: &mut Tally,
+    ) -> Result<(), Halt> {
+        let left: Vec<_> = left.iter().collect();
+        let open = |&(i, part): &(usize, _)| Open {
+            at: [(strip.first + i) as u32, strip.y],
+            sampling: self.jitter.pixel(offsets, self.width, strip.first + i),
+            part,
+        };
+        let open: Vec<_> = left.iter().map(open).collect();
+        let mut take = |k: usize, decided: Decided, effort: Effort| {
+            let i = left[k].0;
+            tally.decided(decided.by, open[k].at, effort.samples, Duration::ZERO);
+            strip.bytes[3 * i..][..3].copy_from_slice(&decided.bytes);
+            if let Some(value) = strip.values.get_mut(i) {
+                *value = decided.value;
+            }
+            if let Some(verdict) = strip.verdicts.get_mut(i) {
+                *verdict = decided.by;
+            }
+        };
+        self.cascade.decide(&open, Decides::Any, &mut take)
+    }
+}
+
+/// With so many words of samples' bits pixels that lanes leave open are decided, whether there are more to come or not.
+const MOST_SUMMED: usize = 1 << 14;
+
+/// Pixels that lanes leave open, by their places, and what is known of them.
+#[derive(Default)]
+struct Left {
+    pixels: Vec<(usize, Option<Known>)>,
+    /// Bits of samples, of one pixel behind those of the other.
+    summed: Vec<u32>,
+}
+
+/// A part whose bits are kept elsewhere.
+struct Known {
+    sum: [f32; 3],
+    error: [f32; 3],
+    summed: Range<usize>,
+}
+
+impl Left {
+    fn push(&mut self, place: usize, part: Option<Part<'_>>) {
+        let known = part.map(|Part { sum, error, summed }| {
+            let start = self.summed.len();
+            self.summed.extend_from_slice(summed);
+            Known {
+                sum,
+                error,
+                summed: start..self.summed.len(),
+            }
+        });
+        self.pixels.push((place, known));
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, Option<Part<'_>>)> {
+        self.pixels.iter().map(|(place, known)| {
+            let part = known.as_ref().map(|known| Part {
+                sum: known.sum,
+                error: known.error,
+                summed: &self.summed[known.summed.clone()],
+            });
+            (*place, part)
+        })
     }
 }
 

@@ -42,6 +42,11 @@ const FAINTER: [Option<i32>; 3] = [Some(-100), Some(-900), None];
 /// What is added to the error of a part: more than all that was flushed to 0 in its sums.
 const FLUSHED: f64 = 1.0 / (1_u128 << 100) as f64;
 
+/// A channel from 255 times its value, and how far that may be off.
+pub(crate) fn of_bytes(value: f64, error: f64) -> Bounded {
+    Bounded { value, error } / Bounded::exact(255.0)
+}
+
 /// The scene on the CPU: f64 with error bounds decides nearly every pixel, and exact numbers decide the others. Only a
 /// pixel that is too much for these is presumed.
 #[derive(Debug)]
@@ -147,7 +152,7 @@ impl<'a> ExactTracer<'a> {
         } else {
             // Only the samples that f64 leaves open are traced in exact numbers; their mean is taken in f64 with
             // bounds.
-            let v = self.mean_bounded(limits, sampling, x, y, |_| true);
+            let v = self.mean_bounded(limits, sampling, [x, y], |_| true, &[]);
             match v.and_then(|(v, by)| Ok(self.decided(v, by)?)) {
                 Ok(decided) => return Ok(decided),
                 Err(Fault::TooManyRays) => return Err(fault),
@@ -173,21 +178,21 @@ impl<'a> ExactTracer<'a> {
         }
     }
 
-    /// Pixel (x, y), of which a part is known: only the other samples are traced. None where that does not tell its
-    /// bytes.
+    /// Pixel (x, y), of which a part is known: only the other samples are traced, and of these only those of which
+    /// `brought`, which has one after the other, does not say what they bring. None where that does not tell its bytes.
     pub fn complete(
         &self,
         limits: &Limits,
         sampling: Sampling<'_>,
-        x: u32,
-        y: u32,
+        [x, y]: [u32; 2],
         part: &Part<'_>,
+        brought: &[Option<[Bounded; 3]>],
     ) -> Result<Option<Decided>, PixelFault> {
-        let rest = self.mean_bounded(limits, sampling, x, y, |sample| !part.holds(sample));
-        let full = Bounded::exact(255.0);
+        let missing = |sample| !part.holds(sample);
+        let rest = self.mean_bounded(limits, sampling, [x, y], missing, brought);
         let [r, g, b] = [0, 1, 2].map(|i| {
             let (value, error) = (f64::from(part.sum[i]), f64::from(part.error[i]) + FLUSHED);
-            Bounded { value, error } / full
+            of_bytes(value, error)
         });
         let whole = |rest: Value<Bounded>| Value {
             color: V3::new(r, g, b) + rest.color,
@@ -205,17 +210,25 @@ impl<'a> ExactTracer<'a> {
     }
 
     /// What the samples that are `wanted` bring to the mean of pixel (x, y), each by the numbers that it needs, and the
-    /// hardest that they took. Of presumed samples nothing is certain, and their errors count as 0.
+    /// hardest that they took. Of the first of them `brought` may tell. Of presumed samples nothing is certain, and their
+    /// errors count as 0.
     fn mean_bounded(
         &self,
         limits: &Limits,
         sampling: Sampling<'_>,
-        x: u32,
-        y: u32,
+        [x, y]: [u32; 2],
         wanted: impl Fn(u32) -> bool,
+        brought: &[Option<[Bounded; 3]>],
     ) -> Result<(Value<Bounded>, DecidedBy), Fault> {
         let mut by = DecidedBy::Bounded;
+        let mut brought = brought.iter();
         let v = mean(sampling, x, y, wanted, |x, y| {
+            if let Some(Some([r, g, b])) = brought.next() {
+                return Ok(Value {
+                    color: V3::new(*r, *g, *b),
+                    open: [0.0; 3],
+                });
+            }
             let (v, hardest) = self.sample_bounded(limits, x, y)?;
             by = by.max(hardest);
             Ok(v)

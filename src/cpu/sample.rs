@@ -1,21 +1,9 @@
 //! A pixel from its samples: the notes' `make_pixel`, in one number type. `pixel` chooses which.
 
 use super::trace::{Fault, Limits, Traced, Unobserved, ray_trace};
-use crate::jitter::{self, Sampling};
+use crate::jitter::Sampling;
 use crate::prepare::Prepared;
 use crate::real::{Real, V3};
-
-/// Where a pixel's samples are, from its middle.
-fn offsets(sampling: Sampling<'_>, x: u32, y: u32) -> impl Iterator<Item = [f64; 2]> {
-    let (hashed, given): (u32, &[[f64; 2]]) = match sampling {
-        Sampling::Once => (0, &[[0.0; 2]]),
-        Sampling::Hash(samples) => (samples, &[]),
-        Sampling::Given(offsets) => (0, offsets),
-    };
-    (0..hashed)
-        .map(move |sample| jitter::hash(x, y, sample))
-        .chain(given.iter().copied())
-}
 
 /// A value, or somewhat less than it, by what rays bring that were not followed.
 #[derive(Debug, Clone, Copy)]
@@ -54,7 +42,7 @@ pub(super) fn mean<R: Real>(
     }
     let mut sum = V3::new(R::zero(), R::zero(), R::zero());
     let mut open = [0.0; 3];
-    for (sample, [a, b]) in (0..).zip(offsets(sampling, x, y)) {
+    for (sample, [a, b]) in (0..).zip(sampling.offsets(x, y)) {
         if wanted(sample) {
             let value = at(px + a, py + b)?;
             sum = sum + value.color;

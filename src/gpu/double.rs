@@ -14,12 +14,18 @@ use crate::shader::pack::Packed;
 /// The stage, whether it is there yet or not.
 #[derive(Debug, Default)]
 pub struct DoubleStage {
-    pipeline: OnceLock<Pipeline>,
+    /// With the number of pixels that it is tried with.
+    pipeline: OnceLock<(Pipeline, u32)>,
     worth: OnceLock<bool>,
 }
 
-/// Pixels of a dispatch that are taken in f64 until it is known whether that is worth its time.
-const TRIED: u32 = 1024;
+/// Samples of a dispatch that are taken in f64 until it is known whether that is worth its time: of software drivers so
+/// many that it takes no second, of others so many that they have work for most of their units.
+const TRIED_IN_SOFTWARE: u32 = 1 << 10;
+/// See [`TRIED_IN_SOFTWARE`].
+const TRIED: u32 = 1 << 14;
+/// As many pixels are taken at least: of several samples most miss a few.
+const TRIED_PIXELS: u32 = 64;
 
 /// Whether a scene can have this stage: not where its bounds cannot be relied on, where pairs of f64 tell that an object
 /// is never seen and f64 does not, or where objects are so many that pairs have them on demand.
@@ -45,22 +51,31 @@ impl DoubleStage {
         }
         let features = features.for_the_list();
         let wgsl = compose(double, &features, Entry::Listed);
-        self.set(Pipeline::new(gpu, double, &features, &wgsl)?);
+        let pipeline = Pipeline::new(gpu, double, &features, &wgsl)?;
+        let samples = if gpu.software {
+            TRIED_IN_SOFTWARE
+        } else {
+            TRIED
+        };
+        self.set(
+            pipeline,
+            (samples / features.samples.max(1)).max(TRIED_PIXELS),
+        );
         Ok(())
     }
 
-    /// Has its pipeline made already.
-    pub fn set(&self, pipeline: Pipeline) {
+    /// Has its pipeline made already, which is tried with so many pixels of a dispatch.
+    pub fn set(&self, pipeline: Pipeline, tried: u32) {
         // It is made once.
-        let _ = self.pipeline.set(pipeline);
+        let _ = self.pipeline.set((pipeline, tried));
     }
 
     /// Its pipeline, once that is there, and how many pixels of a dispatch it is to take at most; none where it is not
     /// worth its time.
     pub fn pipeline(&self) -> Option<(&Pipeline, u32)> {
-        let pipeline = self.pipeline.get()?;
+        let (pipeline, tried) = self.pipeline.get()?;
         match self.worth.get() {
-            None => Some((pipeline, TRIED)),
+            None => Some((pipeline, *tried)),
             Some(true) => Some((pipeline, u32::MAX)),
             Some(false) => None,
         }

@@ -11,7 +11,7 @@ use crate::cpu::camera::camera_setpix;
 use crate::cpu::trace::{Fault, Limits, Traced, Unobserved, ray_trace};
 use crate::frame::PixelFault;
 use crate::gpu::single::Single;
-use crate::jitter::{self, Sampling};
+use crate::jitter::Sampling;
 use crate::prepare::Prepared;
 use crate::real::{Undecided, V3};
 
@@ -128,11 +128,9 @@ impl Pixel<'_, '_> {
 
     /// The offsets of the samples, if there are several.
     fn offsets(&self, sampling: Sampling<'_>) -> Option<Vec<[f64; 2]>> {
-        let hash = |sample| jitter::hash(self.x, self.y, sample);
         match sampling {
             Sampling::Once => None,
-            Sampling::Hash(samples) => Some((0..samples).map(hash).collect()),
-            Sampling::Given(offsets) => Some(offsets.to_vec()),
+            several => Some(several.offsets(self.x, self.y).collect()),
         }
     }
 

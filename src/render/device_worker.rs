@@ -24,6 +24,7 @@ use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::device::Gpu;
 use crate::gpu::double::DoubleStage;
 use crate::shader::constants::LOOP_ITERATIONS;
+use crate::shader::feature_set::FeatureSet;
 use crate::stopwatch::Phases;
 
 /// Bands that a device is given at once: two that it works on, and one that is being finished.
@@ -170,8 +171,9 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
             Here::Opened {
                 device, devices, ..
             } => {
-                let double = device.doubles(rendering.settings, &task.packed, rendering.pixels());
-                let double = double.then(Arc::<DoubleStage>::default);
+                let pixels = rendering.pixels();
+                let features = device.features(rendering.settings, &task.packed, pixels);
+                let double = features.is_listed().then(Arc::<DoubleStage>::default);
                 let (gpu, for_thread) = (Arc::clone(device), double.clone());
                 let thread = move || {
                     let used = Use {
@@ -190,7 +192,7 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     return Gone::Done;
                 }
                 if let Some(double) = &double {
-                    self.make_double(device, devices, Arc::clone(double));
+                    self.make_double(device, devices, features, Arc::clone(double));
                 }
                 let gone = self.serve(here, orders, &heights, news, double.as_deref());
                 if matches!(gone, Gone::Fault(GpuError::Silent { .. })) {
@@ -224,10 +226,15 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
     }
 
     /// Has the stage in f64 made, while the device is at work without it.
-    fn make_double(&self, device: &Arc<Device>, devices: &Devices, double: Arc<DoubleStage>) {
+    fn make_double(
+        &self,
+        device: &Arc<Device>,
+        devices: &Devices,
+        features: FeatureSet,
+        double: Arc<DoubleStage>,
+    ) {
         let (single, in_f64) = (self.rendering.packed(), self.rendering.packed_in_f64());
         let device = Arc::clone(device);
-        let features = device.features(self.rendering.settings, &single, self.rendering.pixels());
         let make = move || {
             if let Err(error) = double.make(&device.gpu, (&single, &in_f64), features) {
                 log::info!("{} makes no pixels in f64: {error}", device.gpu.name);

@@ -32,7 +32,7 @@ pub(super) struct Device {
 /// Scenes of more objects have no stage in f64: preparing them in pairs of f64 takes longer than it spares, since
 /// little of them is in doubt.
 const MOST_DOUBLED: usize = 4096;
-/// Nor have pictures of fewer pixels: compiling its shader takes longer than the CPU does for their doubts.
+/// Nor have pictures of fewer samples: compiling its shader takes longer than the CPU does for their doubts.
 const LEAST_DOUBLED: u64 = 1 << 20;
 
 impl Device {
@@ -45,9 +45,9 @@ impl Device {
     }
 
     /// Whether it decides in f64 what f32 leaves open of such a picture, of so many pixels.
-    pub(super) fn doubles(&self, settings: &Settings, packed: &Packed, pixels: u64) -> bool {
+    fn doubles(&self, settings: &Settings, packed: &Packed, pixels: u64) -> bool {
         settings.has_gpu_bounds()
-            && pixels >= LEAST_DOUBLED
+            && pixels.saturating_mul(settings.samples.into()) >= LEAST_DOUBLED
             && packed.objects.len() <= MOST_DOUBLED
             && *self
                 .doubles

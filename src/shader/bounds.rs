@@ -299,9 +299,9 @@ impl Screen {
     }
 
     /// What a coordinate's own rounding adds to the error of a form, for a unit of its coefficient.
-    pub fn offset_error(&self) -> f64 {
+    pub fn offset_error<F: Format>(&self) -> f64 {
         if self.margin > 0.0 && self.lattice == 0.0 {
-            OFFSET_ERROR
+            F::OFFSET_ERROR
         } else {
             0.0
         }
@@ -324,7 +324,7 @@ pub type Form<const N: usize> = ([f64; N], f64);
 /// A linear form over (X, Y, 1), where |X| and |Y| are at most `reach`.
 pub fn linear<F: Format>(form: [F::Number; 3], reach: [f64; 2], screen: &Screen) -> Form<3> {
     let most = [reach[0], reach[1], 1.0];
-    let moved = [screen.offset_error(), screen.offset_error(), 0.0];
+    let moved = [screen.offset_error::<F>(), screen.offset_error::<F>(), 0.0];
     let roundings = screen.either(LINEAR_ROUNDINGS, SAMPLED_LINEAR_ROUNDINGS);
     (
         form.map(Known::nearest),
@@ -336,7 +336,7 @@ pub fn linear<F: Format>(form: [F::Number; 3], reach: [f64; 2], screen: &Screen)
 pub fn quadratic<F: Format>(form: [F::Number; 6], reach: [f64; 2], screen: &Screen) -> Form<6> {
     let [x, y] = reach;
     let most = [x * x, x * y, y * y, x, y, 1.0];
-    let slope = screen.offset_error();
+    let slope = screen.offset_error::<F>();
     let moved = [2.0 * x, x + y, 2.0 * y, 1.0, 1.0, 0.0].map(|m| m * slope);
     let roundings = screen.either(QUADRATIC_ROUNDINGS, SAMPLED_QUADRATIC_ROUNDINGS);
     (

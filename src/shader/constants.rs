@@ -2,7 +2,7 @@
 
 use super::bounds;
 use super::feature::{Feature, Features};
-use super::feature_set::{FeatureSet, PARTIAL_HEAD};
+use super::feature_set::{FeatureSet, RECORD_HEAD};
 use super::form;
 use super::format::Format;
 use super::kind::SurfaceKind;
@@ -53,6 +53,15 @@ pub(super) fn constants<F: Format>(
     }
     if features.contains(&Feature::Partial) {
         lines.push(format!("const FINE = {};", F::literal(FINE.into())));
+    }
+    if features.contains(&Feature::Samples) {
+        // Not quotients, as a driver may divide f64 when the shader runs.
+        let samples = f64::from(set.samples);
+        let error = F::round_up(bounds::SAMPLE_GROWTH / samples);
+        lines.extend([
+            format!("const SAMPLE_SHARE = {};", F::literal(1.0 / samples)),
+            format!("const SAMPLE_ERROR = {};", F::literal(error)),
+        ]);
     }
     lines.join("\n") + "\n"
 }
@@ -111,8 +120,11 @@ fn counts<F: Format>(packed: &Packed<F>, set: &FeatureSet, features: &Features) 
         ]);
     }
     let words = set.partial_words();
-    // Each of up to five loops takes one more iteration, which only finds its end.
-    let primary_steps = packed.loop_iterations() + 5;
+    // Where lanes trace several samples, each may take longest with another one.
+    let apart = if set.samples > 1 { set.lanes } else { 1 } as usize;
+    // Each of up to five loops takes one more iteration, which only finds its end. Lanes go round together, but where
+    // they trace the samples that are missing.
+    let primary_steps = (packed.loop_iterations() + 5) * if set.double { apart } else { 1 };
     counts.extend([
         (Feature::Packed, "PACKED_GROUP", form::GROUP as usize),
         (Feature::Packed, "PACKED_WORDS", form::GROUP_WORDS as usize),
@@ -125,8 +137,9 @@ fn counts<F: Format>(packed: &Packed<F>, set: &FeatureSet, features: &Features) 
         (
             Feature::Partial,
             "SUMMED_WORDS",
-            words.saturating_sub(PARTIAL_HEAD) as usize,
+            words.saturating_sub(RECORD_HEAD) as usize,
         ),
+        (Feature::Partial, "RECORD_HEAD", RECORD_HEAD as usize),
         (Feature::Counted, "LANES", set.lanes as usize),
         (
             Feature::Counted,
@@ -139,6 +152,7 @@ fn counts<F: Format>(packed: &Packed<F>, set: &FeatureSet, features: &Features) 
         let steps = lit.loop_iterations() + packed.quadrics.len() + 3;
         let in_shadows = has(Feature::WorldLoop) && has(Feature::AnyHit);
         counts.extend([
+            (Feature::Lit, "APART", apart),
             (Feature::Lit, "LIGHTS", lit.lights.len()),
             (Feature::WorldLoop, "WORLD_STEPS", steps),
             (

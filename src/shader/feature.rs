@@ -69,6 +69,8 @@ features! {
     SphereTree = "sphere_tree",
     /// There is one over triangles.
     TriangleTree = "triangle_tree",
+    /// Of surfaces that several objects share not all come in the order of the file, to rays from anywhere.
+    Unordered = "unordered",
     /// The error of a hit goes on into positions.
     FirstOrder = "first_order",
     /// Pixels come with a verdict.

@@ -108,11 +108,11 @@ pub const UNROLLED_OBJECTS: usize = 32;
 /// computes all.
 pub const MOST_PARTIAL: u32 = 1024;
 
-/// Words of such a record before the bits of its samples: place, three sums, three errors.
-pub const PARTIAL_HEAD: u32 = 7;
-
-/// Words of a record of a pixel in doubt: place, and what becomes of it.
+/// Words of a record of a pixel in doubt: place, and what becomes of it in f64.
 pub const LISTED_WORDS: u32 = 2;
+
+/// Words of a record of a pixel of several samples before the bits of these: three sums and three errors more.
+pub const RECORD_HEAD: u32 = LISTED_WORDS + 6;
 
 /// Pixels that an invocation makes where it makes several.
 pub const QUAD: u32 = 4;
@@ -233,22 +233,22 @@ impl FeatureSet {
         }
     }
 
-    /// Whether pixels in doubt are listed. Where four pixels go into a vector of words there is no list.
+    /// Whether pixels in doubt are listed: not where four pixels go into a vector of words, nor where offsets of samples
+    /// are handed over, which are f32.
     pub fn is_listed(&self) -> bool {
         self.listed
             && self.certified
             && self.any_object()
-            && self.samples == 1
+            && (self.samples <= 1 || self.partial_words() > 0 && !self.course)
             && !self.values
             && (self.packed || !self.quad)
     }
 
-    /// Words of a record of a pixel, of either kind; 0 where there are none.
+    /// Words of a record of a pixel; 0 where there are none.
     pub fn record_words(&self) -> u32 {
-        if self.is_listed() {
-            LISTED_WORDS
-        } else {
-            self.partial_words()
+        match self.partial_words() {
+            0 if self.is_listed() => LISTED_WORDS,
+            words => words,
         }
     }
 
@@ -259,9 +259,9 @@ impl FeatureSet {
 
     /// Words of a record that the shader leaves of a pixel of which only some samples are sure; 0 where it leaves none.
     pub fn partial_words(&self) -> u32 {
-        let some = self.any_object() && self.certified;
+        let some = self.any_object() && self.certified && !self.values;
         if some && (2..=MOST_PARTIAL).contains(&self.samples) {
-            PARTIAL_HEAD + self.samples.div_ceil(32)
+            RECORD_HEAD + self.samples.div_ceil(32)
         } else {
             0
         }

@@ -10,8 +10,8 @@
 //!   and in the highest not 0 where the CPU has to decide. A group is as many pixels as an invocation makes.
 //! - **Values**: red, green, blue as f32 (255 is a full byte), then such a word.
 //!
-//! Records of pixels in doubt come last: of those of which some samples are sure (`gpu/bands/partial.rs`), or of all, for
-//! f64 (`gpu/bands/listed.rs`).
+//! Records of pixels in doubt come last: of those of which some samples are sure (`gpu/bands/partial.rs`), or, for f64, of
+//! all (`gpu/bands/listed.rs`).
 
 use super::feature::{Feature, Features};
 use super::feature_set::{FeatureSet, QUAD};
@@ -43,7 +43,7 @@ pub struct Form {
     pub offsets: u32,
     /// Words of a record of a pixel that is in doubt; 0 where there are none.
     pub record_words: u32,
-    /// Whether the records are a list of pixels for f64; else they are of pixels with sure and doubtful samples.
+    /// Whether the records are those of all pixels in doubt, for f64; else of those with sure and doubtful samples.
     pub listed: bool,
 }
 

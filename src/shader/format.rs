@@ -24,6 +24,9 @@ pub trait Format: Debug + Clone + Copy + PartialEq + Send + Sync + 'static {
     /// The same, with what bounds' own roundings may take.
     const U: f64 = Self::ROUNDING * GROWTH;
 
+    /// What the offset of a sample may be off by, in pixels, where it is given and not computed.
+    const OFFSET_ERROR: f64;
+
     /// The nearest number of this format, as a WGSL literal.
     fn literal(value: f64) -> String;
 
@@ -84,6 +87,7 @@ impl Format for Single {
 
     const DOUBLE: bool = false;
     const ROUNDING: f64 = super::bounds::ROUNDING;
+    const OFFSET_ERROR: f64 = super::bounds::OFFSET_ERROR;
 
     fn literal(value: f64) -> String {
         literal(value as f32)
@@ -114,6 +118,8 @@ impl Format for Double {
 
     const DOUBLE: bool = true;
     const ROUNDING: f64 = 1.0 / (1_u64 << 53) as f64;
+    // Offsets are numbers of f64.
+    const OFFSET_ERROR: f64 = 0.0;
 
     fn literal(value: f64) -> String {
         literal_of_f64(value)

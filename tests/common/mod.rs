@@ -9,7 +9,10 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use plumb::certify::lanes::Lanes;
+use plumb::certify::lanes::doubles::DoubleLanes;
+use plumb::certify::lanes::{Lanes, OPEN};
+use plumb::cpu::pixel::ExactTracer;
+use plumb::frame::{Decided, Part};
 use plumb::gpu::bands::{Frame, Rendered, from_the_top, run};
 use plumb::gpu::device::Gpu;
 use plumb::gpu::pipeline::Pipeline;
@@ -89,6 +92,54 @@ pub(crate) fn row_by_lanes(lanes: &Lanes, jitter: &Jitter, y: u32, words: &mut [
         let first = (k * at_once) as u32;
         lanes.sampled([first, y], offsets.as_deref(), words, &mut means);
     }
+}
+
+/// The words of pixels that lanes make in f64, whether f32 is sure of them or not: bytes where they are sure, of several
+/// samples of all of them.
+pub(crate) fn words_in_f64(
+    lanes: &DoubleLanes,
+    exact_tracer: &ExactTracer<'_>,
+    settings: &Settings,
+    places: &[[u32; 2]],
+    [width, height]: [u32; 2],
+) -> Vec<u32> {
+    let mut words = vec![OPEN; places.len()];
+    if settings.supersampling().is_none() {
+        lanes.pixels(places, &mut words);
+        return words;
+    }
+    let (limits, jitter) = (settings.sample_limits(), settings.sampling(width, height));
+    let rows: Vec<_> = (0..height).map(|y| jitter.row(y)).collect();
+    let sampling = |[x, y]: [u32; 2]| {
+        let row = rows[y as usize].as_deref();
+        jitter.pixel(row, width as usize, x as usize)
+    };
+    for (places, words) in places.chunks(64).zip(words.chunks_mut(64)) {
+        let (mut all, mut offsets) = (Vec::new(), Vec::new());
+        for at in places {
+            let [x, y] = at.map(f64::from);
+            for [a, b] in sampling(*at).offsets(at[0], at[1]) {
+                all.push(*at);
+                offsets.push([(x + a) - x, (y + b) - y]);
+            }
+        }
+        let mut brought = vec![None; all.len()];
+        lanes.samples(&all, &offsets, &mut brought);
+        let brought = brought.chunks(settings.samples as usize);
+        for ((at, brought), word) in places.iter().zip(brought).zip(words) {
+            if brought.iter().all(Option::is_some) {
+                let (sampling, nothing) = (sampling(*at), &Part::NOTHING);
+                let mean = exact_tracer.complete(&limits, sampling, *at, nothing, brought);
+                if let Some(Decided {
+                    bytes: [r, g, b], ..
+                }) = mean.unwrap()
+                {
+                    *word = u32::from_le_bytes([r, g, b, 0]);
+                }
+            }
+        }
+    }
+    words
 }
 
 /// A white light; the only one that tests make of its fields, so that another field is given a value here alone.

@@ -238,7 +238,7 @@ fn what_is_missing_of_a_part_is_added() {
             let complete = |sum: [f32; 3], error: [f32; 3], summed: &[u32]| {
                 let part = Part { sum, error, summed };
                 let decided = exact_tracer
-                    .complete(&limits, sampling, x, y, &part)
+                    .complete(&limits, sampling, [x, y], &part, &[])
                     .unwrap();
                 decided.map(|decided| decided.bytes)
             };

@@ -19,6 +19,8 @@ const BEYOND_F32: &[(&str, f64)] = &[
     ("light_years", 1.0),
     // Shares of a light that are below what f32 can hold.
     ("lit_faint_panes", 0.3),
+    // A quadric and a plane in one place: which is nearer is a rounding.
+    ("lit_flat_quadrics_first", 25.0),
     // The height of a lamp 10⁻⁶ above a floor, as a difference of positions.
     ("lit_lamp_over_floor", 0.6),
     // All light passes one picture within 10⁻⁸ of the corner of four texels.

@@ -130,6 +130,41 @@ fn a_shadow_ray_that_takes_too_long_is_handed_to_the_cpu() {
     assert!(gpu[2] > 0, "{gpu:?}");
 }
 
+/// A driver counts the rounds of a vector's lanes together: where some of its pixels have light at one sample and some at
+/// another, that is more than any of them goes round. (lavapipe drops a lamp or a sample then.)
+#[test]
+fn lanes_that_have_light_at_different_samples_are_not_cut() {
+    let mut differ = 0;
+    for (lamps, samples) in [(1800, 64), (40, 2000)] {
+        let mut scene = scene([16, 16], vec![ball(DVec3::new(4.0, 4.0, -4.0), 4.3, 0)]);
+        scene.camera.worlddim = DVec2::new(8.0, 8.0);
+        scene.camera.viewpoint = DVec3::new(4.0, 4.0, 8.0);
+        scene.materials[0].ambient = DVec3::splat(0.5);
+        scene.materials[0].diffuse = DVec3::ONE;
+        scene.lights = (0..lamps)
+            .map(|i| {
+                let turn = 2.4 * f64::from(i);
+                let far = 6.0 * (f64::from(i) / f64::from(lamps)).sqrt();
+                let (sin, cos) = turn.sin_cos();
+                Light {
+                    emissivity: DVec3::splat(60.0 / f64::from(lamps)),
+                    ..light(DVec3::new(4.0 + far * cos, 4.0 + far * sin, 9.0))
+                }
+            })
+            .collect();
+        let on = |backend| Settings {
+            samples,
+            ..on(backend)
+        };
+        let (gpu, report) = picture(&scene, &on(Backend::Gpu));
+        assert_eq!(report.revoked, None);
+        let (cpu, _) = picture(&scene, &on(Backend::Cpu));
+        let wrong = gpu.chunks(3).zip(cpu.chunks(3)).filter(|(a, b)| a != b);
+        differ += wrong.count();
+    }
+    assert_eq!(differ, 0);
+}
+
 /// More samples than the loops are sure to make are taken by the CPU, not dropped.
 #[test]
 fn many_samples_are_not_cut() {

@@ -5,10 +5,12 @@
 use plumb::certify::lanes::OPEN;
 use plumb::certify::lanes::doubles::DoubleLanes;
 use plumb::certify::trust;
+use plumb::cpu::pixel::ExactTracer;
 use plumb::gpu::adapters;
 use plumb::gpu::bands;
 use plumb::gpu::double::{DoubleStage, can_be};
 use plumb::gpu::pipeline::Pipeline;
+use plumb::jitter::Sampling;
 use plumb::render::{Backend, Settings};
 use plumb::scene::Scene;
 use plumb::shader::compose::{Entry, compose};
@@ -29,14 +31,14 @@ pub(crate) struct Doubled {
 
 /// Renders with the device's f32 and what f64 makes of its doubts; none where the picture has no such stage.
 pub(crate) fn doubled(scene: &Scene, settings: &Settings) -> Option<Doubled> {
-    doubled_by(scene, settings, &|text| text)
+    doubled_by(scene, settings, &mut |text| text)
 }
 
 /// The same with another text of the shader.
 fn doubled_by(
     scene: &Scene,
     settings: &Settings,
-    change: &dyn Fn(String) -> String,
+    change: &mut dyn FnMut(String) -> String,
 ) -> Option<Doubled> {
     let gpu = adapters::shared(None).unwrap_or_else(|error| panic!("{error}"));
     if !trust::has_doubles(&gpu, None) {
@@ -56,7 +58,8 @@ fn doubled_by(
     let double = DoubleStage::default();
     let listed = features.for_the_list();
     let text = change(compose(&in_f64, &listed, Entry::Listed));
-    double.set(Pipeline::new(&gpu, &in_f64, &listed, &text).unwrap());
+    let second = Pipeline::new(&gpu, &in_f64, &listed, &text).unwrap();
+    double.set(second, u32::MAX);
     double.judge(true);
     let [width, height] = scene.camera.pixeldim;
     let frame = bands::Frame {
@@ -101,9 +104,9 @@ pub(crate) fn with_lanes(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Vec<
         .rev()
         .flat_map(|y| (0..width).map(move |x| [x, y]))
         .collect();
+    let exact_tracer = ExactTracer::new(scene, settings.view());
     let picture = |(name, lanes): (&str, DoubleLanes)| {
-        let mut words = vec![OPEN; places.len()];
-        lanes.pixels(&places, &mut words);
+        let words = common::words_in_f64(&lanes, &exact_tracer, settings, &places, [width, height]);
         let mut rgb = rgb.to_vec();
         for (pixel, word) in rgb.chunks_mut(3).zip(&words) {
             if *word < OPEN {
@@ -118,39 +121,114 @@ pub(crate) fn with_lanes(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Vec<
         .collect()
 }
 
-/// A scene of a folder, at this size or its own; and how it is rendered.
-fn scene(name: &str, pixeldim: Option<[u32; 2]>) -> (Scene, Settings) {
+/// A scene of a folder, at this size or its own; and how it is rendered, with so many samples a pixel.
+fn scene(name: &str, pixeldim: Option<[u32; 2]>, samples: u32) -> (Scene, Settings) {
     let mut scene = common::read(&common::scenes().join(name));
     scene.camera.pixeldim = pixeldim.unwrap_or(scene.camera.pixeldim);
-    (scene, common::on(Backend::Gpu))
+    let settings = Settings {
+        samples,
+        ..common::on(Backend::Gpu)
+    };
+    (scene, settings)
 }
 
-/// Most of what f32 leaves, f64 decides, and every byte of that is right.
+/// Most of what f32 leaves, f64 decides, and every byte of that is right; of several samples too.
 #[test]
 fn little_is_left_behind_f64() {
-    for (name, left_of_a_hundred) in [
-        ("lit/mirror_and_glass.txt", 10),
-        ("lit/glint.txt", 10),
-        ("lit/hall_of_mirrors.txt", 10),
-        ("gallery/quadric_chess.txt", 10),
-        ("lit/procedural_lit.txt", 10),
-        ("lit/magic_lantern.txt", 10),
-        ("gallery/procedural_all.txt", 20),
+    for (name, samples, left_of_a_hundred) in [
+        ("lit/mirror_and_glass.txt", 1, 10),
+        ("lit/glint.txt", 1, 10),
+        ("lit/hall_of_mirrors.txt", 1, 10),
+        ("gallery/quadric_chess.txt", 1, 10),
+        ("lit/procedural_lit.txt", 1, 10),
+        ("lit/magic_lantern.txt", 1, 10),
+        ("gallery/procedural_all.txt", 1, 20),
+        ("lit/mirror_and_glass.txt", 5, 10),
+        ("gallery/quadric_chess.txt", 3, 10),
+        // Of these bits take two words.
+        ("lit/glint.txt", 40, 10),
+        ("gallery/procedural_all.txt", 4, 20),
     ] {
-        let (scene, settings) = scene(name, Some([320, 240]));
+        let size = if samples > 1 { [120, 90] } else { [320, 240] };
+        let (scene, settings) = scene(name, Some(size), samples);
         let Some(all) = doubled(&scene, &settings) else {
             return;
         };
-        let (cpu, _) = common::picture(&scene, &common::on(Backend::Cpu));
-        let right = cpu.as_chunks::<3>().0;
+        // The CPU's own picture has pixels in it that the same text decided.
+        let tracer = ExactTracer::new(&scene, settings.view());
+        let limits = settings.sample_limits();
         for (place, bytes) in &all.decided {
-            assert_eq!(right[*place], *bytes, "{name}, {place}");
+            let [x, row] = [place % size[0] as usize, place / size[0] as usize].map(|i| i as u32);
+            let y = size[1] - 1 - row;
+            let sampling = match samples {
+                1 => Sampling::Once,
+                samples => Sampling::Hash(samples),
+            };
+            let right = tracer.trace(&limits, sampling, x, y).unwrap().bytes;
+            assert_eq!(right, *bytes, "{name}, {samples} samples, {place}");
         }
-        println!("{name}: {} decided, {} left", all.decided.len(), all.left);
-        assert!(all.decided.len() > 20, "{name}");
+        println!(
+            "{name}, {samples} samples: {} decided, {} left",
+            all.decided.len(),
+            all.left
+        );
+        assert!(all.decided.len() > 20, "{name}, {samples} samples");
         let listed = all.decided.len() + all.left;
-        assert!(all.left * 100 <= left_of_a_hundred * listed, "{name}");
+        assert!(
+            all.left * 100 <= left_of_a_hundred * listed,
+            "{name}, {samples} samples"
+        );
     }
+}
+
+/// What f32 made of a pixel's samples is a part of its mean: its sum, and how far that may be off.
+#[test]
+fn parts_count_with_their_errors() {
+    let (scene, settings) = scene("lit/mirror_and_glass.txt", Some([120, 90]), 5);
+    let changed = |from: &str, to: &str| {
+        let mut count = 0;
+        let all = doubled_by(&scene, &settings, &mut |text| {
+            count += text.matches(from).count();
+            text.replace(from, to)
+        });
+        assert_eq!(count, usize::from(all.is_some()), "{from}");
+        all
+    };
+    let Some(honest) = doubled(&scene, &settings) else {
+        return;
+    };
+    // Off by half of all bytes nothing is certain, but what is brighter than all bytes.
+    let error = "traced.error = known(first + 5u)";
+    let coarse = changed(error, "traced.error = vec3<f64>(128lf) + known(first + 5u)").unwrap();
+    assert!(coarse.decided.len() * 20 < honest.decided.len());
+    // And a sum that is off shows in the bytes.
+    let sum = "traced.color = known(first + 2u)";
+    let off = changed(sum, "traced.color = vec3<f64>(1lf) + known(first + 2u)").unwrap();
+    let kept = |other: &Doubled| -> usize {
+        let same = honest
+            .decided
+            .iter()
+            .filter(|one| other.decided.contains(one));
+        same.count()
+    };
+    assert!(kept(&off) * 2 < honest.decided.len());
+    // Each sample that is missing is traced, and none that is not.
+    let bits = "& 1u) == 0u";
+    let others = changed(bits, "& 1u) != 0u").unwrap();
+    assert!(kept(&others) * 2 < honest.decided.len());
+}
+
+/// Through the whole of a rendering, where the stage is on trial at first, of several samples: a megapixel of these.
+#[test]
+fn a_stage_on_trial_changes_no_byte() {
+    let (scene, settings) = scene("lit/mirror_and_glass.txt", Some([300, 225]), 16);
+    let (gpu, report) = common::picture(&scene, &settings);
+    assert_eq!(report.revoked, None);
+    let alone = Settings {
+        backend: Backend::Cpu,
+        ..settings
+    };
+    assert!(gpu == common::picture(&scene, &alone).0);
 }
 
 /// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: what is
@@ -166,7 +244,7 @@ fn many_objects_have_no_stage() {
     }
     let scene = plumb::scene::parse("many", text.as_bytes(), &common::scenes()).unwrap();
     let settings = common::on(Backend::Gpu);
-    let tracer = plumb::cpu::pixel::ExactTracer::new(&scene, settings.view());
+    let tracer = ExactTracer::new(&scene, settings.view());
     let single = Packed::new(&scene, &settings);
     assert!(single.screen_grid.is_some() && !single.spheres.is_empty());
     let on_demand = Packed::<F64>::rounded(tracer.pairs(), &scene, &settings);
@@ -203,11 +281,11 @@ fn bounds_of_nothing_are_noticed() {
         "hard/tile_edges.txt",
     ] {
         // As it is: at another size rays do not meet borders exactly.
-        let (scene, settings) = scene(name, None);
+        let (scene, settings) = scene(name, None, 1);
         let Some(honest) = doubled(&scene, &settings) else {
             return;
         };
-        let bold = doubled_by(&scene, &settings, &without_bounds).unwrap();
+        let bold = doubled_by(&scene, &settings, &mut { without_bounds }).unwrap();
         fewer += honest.left.saturating_sub(bold.left);
         let (cpu, _) = common::picture(&scene, &common::on(Backend::Cpu));
         let right = cpu.as_chunks::<3>().0;

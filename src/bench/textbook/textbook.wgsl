@@ -22,7 +22,9 @@ struct Dispatch {
     first: vec2u,
     size: vec2u,
     zero: u32,
-    unused: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
 }
 
 struct Object {

@@ -30,7 +30,6 @@ impl<S: Simd> D<S> {
 
     /// The number of a lane.
     #[inline(always)]
-    #[cfg(test)]
     pub(super) fn lane(&self, lane: usize) -> f64 {
         let half = S::f64s::LEN;
         match lane.checked_sub(half) {

@@ -6,6 +6,7 @@ use fearless_simd::{Level, Simd};
 use super::lit_double;
 use super::scene::{Buffers, Numbers, Scene, numbers};
 use super::{buffers, may_be};
+use crate::real::Bounded;
 use crate::scene::Scene as Model;
 use crate::settings::{Precision, Settings};
 use crate::shader::format::Double;
@@ -15,7 +16,7 @@ use crate::shader::pack::Packed;
 /// time by itself.
 const MOST_OBJECTS: usize = 512;
 
-/// A lit scene in f64, for pixels of one sample.
+/// A lit scene in f64.
 #[derive(Debug)]
 pub struct DoubleLanes {
     packed: Packed<Double>,
@@ -30,7 +31,6 @@ impl DoubleLanes {
     pub fn may_be(scene: &Model, settings: &Settings) -> bool {
         !scene.lights.is_empty()
             && scene.objects.len() <= MOST_OBJECTS
-            && settings.supersampling().is_none()
             && !settings.values
             && is_wide(Level::new())
     }
@@ -75,7 +75,30 @@ impl DoubleLanes {
         Scene::new(simd, &self.packed, &self.numbers, &self.buffers)
     }
 
-    /// Pixels, by column and row: of each its bytes, red lowest, or [`OPEN`](super::OPEN) in the highest.
+    /// Samples, by their pixels' columns and rows, and by where their rays pass, in pixels from the middle: of each what
+    /// it brings, where that is certain.
+    pub fn samples(
+        &self,
+        places: &[[u32; 2]],
+        offsets: &[[f64; 2]],
+        brought: &mut [Option<[Bounded; 3]>],
+    ) {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match self.level {
+            Level::Avx512(simd) => {
+                lit_double::samples(&self.scene(simd), places, offsets, brought);
+            }
+            Level::Avx2(simd) => lit_double::samples(&self.scene(simd), places, offsets, brought),
+            _ => brought.fill(None),
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        {
+            let _ = (places, offsets);
+            brought.fill(None);
+        }
+    }
+
+    /// Pixels of one sample, by column and row: of each its bytes, red lowest, or [`OPEN`](super::OPEN) in the highest.
     pub fn pixels(&self, places: &[[u32; 2]], words: &mut [u32]) {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match self.level {

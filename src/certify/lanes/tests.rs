@@ -13,6 +13,8 @@ use super::vector::{F, M};
 use super::{Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
 use crate::cpu::trace::Limits;
+use crate::jitter::Sampling;
+use crate::real::Bounded;
 use crate::scene::{Scene, load};
 use crate::settings::Settings;
 use crate::shader::pack::Packed;
@@ -61,7 +63,7 @@ impl Fault {
         matches!(self, Self::SamplesShifted | Self::SampleLost)
     }
 
-    /// Whether it may be in f64 too, which has no row of pixels.
+    /// Whether it may be in f64 too, which has no rows with means.
     fn is_of_lists(self) -> bool {
         !self.is_of_samples()
     }
@@ -103,7 +105,7 @@ const SIZE: [u32; 2] = [45, 31];
 /// A picture, and what is right.
 struct Referee {
     lanes: Lanes,
-    /// Scenes with lights in f64, of one sample, with each kind of vectors.
+    /// Scenes with lights in f64, with each kind of vectors.
     doubles: Vec<(&'static str, DoubleLanes)>,
     settings: Settings,
     bytes: Vec<[u8; 3]>,
@@ -161,7 +163,10 @@ impl Referee {
             .collect();
         let count = |(name, doubles): &(&'static str, DoubleLanes)| {
             let mut words = vec![OPEN; pixels];
-            doubles.pixels(&places, &mut words);
+            match self.settings.samples {
+                1 => doubles.pixels(&places, &mut words),
+                samples => words = means(doubles, &places, samples),
+            }
             let right = order.iter().map(|i| &self.bytes[*i]);
             (*name, counted(&words, right))
         };
@@ -182,6 +187,36 @@ impl Referee {
         }
         [sure, wrong]
     }
+}
+
+/// The words of pixels of which f64 is sure of all samples, by the hash.
+fn means(doubles: &DoubleLanes, places: &[[u32; 2]], samples: u32) -> Vec<u32> {
+    let (mut all, mut offsets) = (Vec::new(), Vec::new());
+    for at in places {
+        all.extend((0..samples).map(|_| *at));
+        offsets.extend(Sampling::Hash(samples).offsets(at[0], at[1]));
+    }
+    let mut brought = vec![None; all.len()];
+    doubles.samples(&all, &offsets, &mut brought);
+    let word = |brought: &[Option<[Bounded; 3]>]| {
+        let brought: Vec<_> = brought.iter().copied().collect::<Option<_>>()?;
+        let mut bytes = [0; 4];
+        for (channel, byte) in bytes.iter_mut().take(3).enumerate() {
+            let sum = |of: fn(Bounded) -> f64| -> f64 {
+                brought.iter().map(|brought| of(brought[channel])).sum()
+            };
+            let mean = |sum: f64| 255.0 * sum / f64::from(samples);
+            let [value, error] = [mean(sum(|b| b.value)), mean(sum(|b| b.error))];
+            let ends = [-1.0, 1.0].map(|way| value + way * (1.01 * error + 1e-9));
+            let [least, most] = ends.map(|end| end.clamp(0.0, 255.0) as u8);
+            *byte = (least == most).then_some(least)?;
+        }
+        Some(u32::from_le_bytes(bytes))
+    };
+    let pixels = brought.chunks(samples as usize);
+    pixels
+        .map(|brought| word(brought).unwrap_or(OPEN))
+        .collect()
 }
 
 /// How many words are sure, and wrong.
@@ -229,7 +264,11 @@ fn what_is_wrong_where_lanes_are_put_together_is_noticed() {
             assert!(2 * sure > referee.bytes.len(), "{name}: {sure} sure");
         }
         for (name, [sure, wrong]) in referee.counts_of_doubles(1) {
-            println!("{name}, in f64: {sure} of {} sure", referee.bytes.len());
+            let samples = referee.settings.samples;
+            println!(
+                "{name}, in f64: {sure} of {} sure, {samples} samples",
+                referee.bytes.len()
+            );
             assert_eq!(wrong, 0, "{name}, in f64");
             assert!(100 * sure > 95 * referee.bytes.len(), "{name}: {sure} sure");
         }
@@ -251,18 +290,20 @@ fn what_is_wrong_where_lanes_are_put_together_is_noticed() {
         if !fault.is_of_lists() {
             continue;
         }
-        FAULT.set(Some(fault));
-        let counts: Vec<_> = one.iter().map(|one| one.counts_of_doubles(2)).collect();
-        FAULT.set(None);
-        let lit: Vec<_> = counts.iter().filter(|counts| !counts.is_empty()).collect();
-        for (kind, (name, _)) in lit
-            .first()
-            .into_iter()
-            .flat_map(|first| first.iter().enumerate())
-        {
-            let wrong: Vec<_> = lit.iter().map(|counts| counts[kind].1[1]).collect();
-            println!("{fault:?}, {name}, in f64: {wrong:?} wrong");
-            assert!(wrong.iter().sum::<usize>() > 0, "{fault:?}, {name}, in f64");
+        // Samples come from a list as pixels do; what is traced is the same.
+        let swapped = fault == Fault::PixelsSwapped;
+        let lists = [(&one, 2), (&several, 3)];
+        for (referees, step) in lists.into_iter().take(1 + usize::from(swapped)) {
+            FAULT.set(Some(fault));
+            let counts = referees.iter().map(|one| one.counts_of_doubles(step));
+            let lit: Vec<_> = counts.filter(|counts| !counts.is_empty()).collect();
+            FAULT.set(None);
+            let first = lit.first().into_iter().flatten();
+            for (kind, (name, _)) in first.enumerate() {
+                let wrong: Vec<_> = lit.iter().map(|counts| counts[kind].1[1]).collect();
+                println!("{fault:?}, {name}, in f64: {wrong:?} wrong");
+                assert!(wrong.iter().sum::<usize>() > 0, "{fault:?}, {name}, in f64");
+            }
         }
     }
 }

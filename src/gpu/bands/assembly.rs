@@ -7,6 +7,7 @@ use super::partial::{Layout, Partials};
 use super::plan::Rectangle;
 use super::slot::Took;
 use crate::frame::{Band, spare};
+use crate::shader::feature_set::LISTED_WORDS;
 use crate::shader::form::{GROUP, GROUP_WORDS, Pixels};
 
 /// A band as the GPU has it.
@@ -89,7 +90,7 @@ impl Assembly {
             listed: 0,
         });
         let list = [counter, records];
-        if !layout.listed {
+        if layout.words > LISTED_WORDS {
             partials.take(rectangle, self.width as u32, layout.words, list);
         }
         let mut target = Target {

@@ -1,15 +1,12 @@
 //! Pixels that were in doubt in f32, and what f64 made of them on the GPU.
 //!
 //! The picture's shader lists them, in an order that changes from run to run, as long as there is room; another one
-//! takes them from the list and writes what becomes of them beside their places (`shaders/entry/listed.wgsl`). What it
-//! is not sure of either, and what had no room, is left to the CPU.
+//! takes them from the list and writes what becomes of them beside their places (`shaders/entry/listed.wgsl`): of
+//! several samples it traces those that f32 left. What it is not sure of either, and what had no room, is left to the
+//! CPU.
 
 use super::partial::Layout;
 use super::plan::Rectangle;
-use crate::shader::feature_set::LISTED_WORDS;
-
-/// Words of a record: place, and pixel.
-const WORDS: usize = LISTED_WORDS as usize;
 
 fn word(bytes: &[u8; 4]) -> u32 {
     u32::from_le_bytes(*bytes)
@@ -34,8 +31,11 @@ pub(super) fn decided<'a>(
 ) -> impl Iterator<Item = (u32, [u8; 3])> + 'a {
     let count = count(layout, counters);
     let columns = rectangle.columns.len() as u32;
-    let list = records.as_chunks::<4>().0.as_chunks::<WORDS>().0.iter();
-    list.take(count as usize).filter_map(move |[place, pixel]| {
+    let list = records.chunks_exact(4 * layout.words.max(1) as usize);
+    list.take(count as usize).filter_map(move |record| {
+        let [place, pixel, ..] = record.as_chunks().0 else {
+            return None;
+        };
         let place = word(place);
         let [red, green, blue, verdict] = *pixel;
         let inside = u64::from(place) < rectangle.pixels();
@@ -72,6 +72,7 @@ pub(super) fn settle(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shader::feature_set::LISTED_WORDS;
     use crate::shader::form::{Form, Pixels};
 
     fn layout(pixels: u64) -> Layout {

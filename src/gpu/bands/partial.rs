@@ -5,7 +5,7 @@
 
 use super::plan::Rectangle;
 use crate::frame::Part;
-use crate::shader::feature_set::PARTIAL_HEAD;
+use crate::shader::feature_set::{LISTED_WORDS, RECORD_HEAD};
 use crate::shader::form::Form;
 
 /// Bytes of the counters of records and of workgroups for them, before the pixels.
@@ -27,7 +27,7 @@ pub(super) struct Layout {
     pub(super) pixels: u64,
     /// Words of a record.
     pub(super) words: u32,
-    /// Whether the records are a list for f64.
+    /// Whether the records are of all pixels in doubt, for f64.
     pub(super) listed: bool,
     /// Records that there is room for.
     pub(super) room: u32,
@@ -41,7 +41,7 @@ impl Layout {
         let words = form.record_words;
         let (counter, room) = match words {
             0 => (0, 0),
-            _ if form.listed => (COUNTER, room(pixels, LISTED_SHARE, words)),
+            LISTED_WORDS => (COUNTER, room(pixels, LISTED_SHARE, words)),
             words => (COUNTER, room(pixels, PARTIAL_SHARE, words)),
         };
         let record = 4 * u64::from(words);
@@ -94,11 +94,11 @@ impl Partials {
         let found = self.places.binary_search_by_key(&place, |(at, _)| *at);
         let (_, record) = self.places.get(found.ok()?)?;
         let words = self.words.chunks_exact(self.stride).nth(*record as usize)?;
-        let (head, summed) = words.split_at_checked(PARTIAL_HEAD as usize)?;
-        let three = |first: usize| [0, 1, 2].map(|i| f32::from_bits(head[first + i]));
+        let (head, summed) = words.split_at_checked(RECORD_HEAD as usize)?;
+        let three = |first: u32| [0, 1, 2].map(|i| f32::from_bits(head[(first + i) as usize]));
         Some(Part {
-            sum: three(1),
-            error: three(4),
+            sum: three(LISTED_WORDS),
+            error: three(LISTED_WORDS + 3),
             summed,
         })
     }
@@ -129,7 +129,9 @@ impl Partials {
         let columns = rectangle.columns.end - rectangle.columns.start;
         for (i, record) in self.words[before..].chunks_exact(self.stride).enumerate() {
             let (row, column) = (record[0] / columns, record[0] % columns);
-            if u64::from(record[0]) < rectangle.pixels() {
+            // Of some nothing is known: they are listed for f64.
+            let is_part = record[RECORD_HEAD as usize..].iter().any(|bits| *bits != 0);
+            if is_part && u64::from(record[0]) < rectangle.pixels() {
                 let place = row * width + rectangle.columns.start + column;
                 self.places.push((place, (before / self.stride + i) as u32));
             }
@@ -190,8 +192,14 @@ pub(crate) mod tests {
         for record in words.chunks_exact_mut(stride.max(1)) {
             match FAULT.get() {
                 None => {}
-                Some(Fault::Bit) => record[7] |= record[7] + 1,
-                Some(Fault::Sum) => record[1] = (f32::from_bits(record[1]) + 1.0).to_bits(),
+                Some(Fault::Bit) => {
+                    let bits = &mut record[RECORD_HEAD as usize];
+                    *bits |= bits.wrapping_add(1);
+                }
+                Some(Fault::Sum) => {
+                    let sum = &mut record[LISTED_WORDS as usize];
+                    *sum = (f32::from_bits(*sum) + 1.0).to_bits();
+                }
             }
         }
     }
@@ -226,8 +234,9 @@ pub(crate) mod tests {
     #[test]
     fn records_are_found_at_their_places() {
         let record = |place: u32, sum: f32, bits: [u32; 2]| {
-            let words = [place, 0, 0, 0, 0, 0, 0, bits[0], bits[1]];
-            words.map(|word| if word == 0 { sum.to_bits() } else { word })
+            let mut words = [sum.to_bits(); 10];
+            [words[0], words[1], words[8], words[9]] = [place, 0xff00_0000, bits[0], bits[1]];
+            words
         };
         let bytes =
             |words: &[u32]| -> Vec<u8> { words.iter().flat_map(|w| w.to_le_bytes()).collect() };
@@ -237,19 +246,24 @@ pub(crate) mod tests {
             last: false,
         };
         let mut partials = Partials::default();
-        let left = [record(4, 1.5, [5, 1]), record(2, 2.5, [1, 2]), [9; 9]];
+        let left = [record(4, 1.5, [5, 1]), record(2, 2.5, [1, 2]), [9; 10]];
         partials.take(
             &rectangle,
             5,
-            9,
+            10,
             [&bytes(&[2, 1]), &bytes(left.as_flattened())],
         );
         rectangle.columns = 3..5;
-        let right = [record(3, 3.5, [3, 4]), record(4, 4.5, [3, 4])];
+        // One that is listed for f64 alone, and one at no place.
+        let right = [
+            record(3, 3.5, [3, 4]),
+            record(0, 5.5, [0, 0]),
+            record(4, 4.5, [3, 4]),
+        ];
         partials.take(
             &rectangle,
             5,
-            9,
+            10,
             [&bytes(&[7, 1]), &bytes(right.as_flattened())],
         );
         partials.finish();

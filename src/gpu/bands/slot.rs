@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use bytemuck::Zeroable as _;
+
 use super::super::GpuError;
 use super::super::device::Gpu;
 use super::super::double::DoubleStage;
@@ -39,8 +41,8 @@ struct Pending {
     index: wgpu::SubmissionIndex,
     rectangle: Rectangle,
     layout: partial::Layout,
-    /// Whether the list is taken in f64.
-    doubled: bool,
+    /// How many records of the list f64 takes, if it takes any.
+    taken: Option<u32>,
 }
 
 /// What a dispatch took.
@@ -162,16 +164,16 @@ impl Slot {
         let rows = rectangle.band.end - rectangle.band.start;
         let form = &pipeline.form;
         let pitch = columns.next_multiple_of(form.group());
-        let mut layout = partial::Layout::new(form, u64::from(pitch) * u64::from(rows));
+        let layout = partial::Layout::new(form, u64::from(pitch) * u64::from(rows));
         let double = frame.double.and_then(DoubleStage::pipeline);
-        if let Some((_, most)) = double {
-            layout.room = layout.room.min(most);
-        }
+        let taken = double.map_or(0, |(_, most)| layout.room.min(most));
         let dispatch = Dispatch {
             first: [rectangle.columns.start, rectangle.band.end - 1],
             size: [columns, rows],
             zero: 0,
             room: layout.room,
+            taken,
+            ..Dispatch::zeroed()
         };
         gpu.queue
             .write_buffer(&self.dispatch, 0, bytemuck::bytes_of(&dispatch));
@@ -246,7 +248,7 @@ impl Slot {
             index,
             rectangle,
             layout,
-            doubled: double.is_some(),
+            taken: double.is_some().then_some(taken),
         });
         self.is_clean = false;
     }
@@ -265,7 +267,7 @@ impl Slot {
             index,
             rectangle,
             layout,
-            doubled,
+            taken,
         } = pending;
         gpu.wait(index)?;
         let waited = watch.lap(Phase::Wait);
@@ -283,7 +285,7 @@ impl Slot {
                         * f64::from(gpu.queue.get_timestamp_period())
                         * 1e-9
                 };
-                if doubled {
+                if taken.is_some() {
                     [seconds(start, double), seconds(single, double)]
                 } else {
                     [seconds(start, single), 0.0]
@@ -298,11 +300,7 @@ impl Slot {
             .get_mapped_range(..layout.bytes)
             .map_err(|error| gpu.lost(&error))?;
         assembly.take(&rectangle, &layout, &view);
-        let listed = if doubled {
-            listed::count(&layout, &view)
-        } else {
-            0
-        };
+        let listed = taken.map_or(0, |taken| listed::count(&layout, &view).min(taken));
         drop(view);
         self.buffers.staging.unmap();
         self.is_clean = true;

@@ -1,10 +1,13 @@
-//! A picture of the self-test: a small scene through the shader that real scenes get, against the referee.
+//! Pictures of the self-tests: a small scene through the shader that real scenes get, against the referee.
 //!
 //! Single operations may be right where a compiler sees them by themselves, and wrong where it puts a whole shader
 //! together. So the primary ray, forms of planes and spheres, their bounds, tiles behind a barrier and the bytes are
-//! tried as they are composed for a picture.
+//! tried as they are composed for a picture; in f64, which is asked for lit scenes above all, also directions, powers
+//! and shadows.
 
 use std::path::Path;
+
+use bytemuck::Zeroable as _;
 
 use super::Outcome;
 use crate::cpu::pixel::ExactTracer;
@@ -17,6 +20,7 @@ use crate::settings::Settings;
 use crate::shader::compose::{Entry, compose};
 use crate::shader::constants::WORKGROUP;
 use crate::shader::feature_set::FeatureSet;
+use crate::shader::format::Format;
 use crate::shader::pack::Packed;
 use crate::shader::records::Dispatch;
 
@@ -27,6 +31,16 @@ pub(super) const SCENE: &str = "
     material other { ambient 1.7 4.9 8.3 }
     tiled_plane floor { material plain normal 0.1 1 0.05 point 0 -0.7 0 altmaterial other dimension 1.3 1.7 }
     sphere ball { material plain center 5.1 1.7 -2.3 radius 1.3 }";
+
+/// The same under a lamp, whose light glints on the ball.
+pub(super) const LIT_SCENE: &str = "
+    camera eye { pixeldim 32 16 worlddim 8 4 viewpoint 3.7 1.9 6.3 }
+    material plain { ambient 2.1 1.3 0.9 diffuse 3.1 4.3 2.7 }
+    material other { ambient 1.7 0.9 2.3 diffuse 1.9 5.3 4.1 }
+    material shiny { ambient 0.9 1.1 0.7 diffuse 2.9 3.7 5.9 specular 0.6 shininess 6.5 }
+    tiled_plane floor { material plain normal 0.1 1 0.05 point 0 -0.7 0 altmaterial other dimension 1.3 1.7 }
+    sphere ball { material shiny center 5.1 1.7 -2.3 radius 1.3 }
+    light lamp { location 2.3 5.9 1.1 emissivity 3.1 2.7 2.3 }";
 
 /// Its entry point: that of a picture makes several pixels at once, which takes several times as long to compile.
 const ENTRY: &str = "
@@ -73,9 +87,30 @@ pub(super) fn judge(tried: &Tried) -> Outcome {
     }
 }
 
-/// Renders the scene on the device and on the CPU.
+/// Renders a scene on the device and on the CPU.
 pub(super) fn run(gpu: &Gpu) -> Result<Tried, GpuError> {
-    let Ok(scene) = load_from("self-test", SCENE.as_bytes(), Path::new(".")) else {
+    try_scene(SCENE, |scene, settings| {
+        let packed = Packed::new(scene, settings);
+        let features = FeatureSet::new(&packed, settings, gpu.lanes);
+        on_device(gpu, scene, &packed, &features)
+    })
+}
+
+/// The same in f64.
+pub(super) fn run_double(gpu: &Gpu) -> Result<Tried, GpuError> {
+    try_scene(LIT_SCENE, |scene, settings| {
+        let features = FeatureSet::new(&Packed::new(scene, settings), settings, gpu.lanes);
+        let packed = Packed::in_f64(scene, settings);
+        on_device(gpu, scene, &packed, &features.for_the_list())
+    })
+}
+
+/// A scene's pixels as a device gives them, and as the referee has them.
+fn try_scene(
+    text: &str,
+    on_device: impl FnOnce(&Scene, &Settings) -> Result<Vec<[u8; 4]>, GpuError>,
+) -> Result<Tried, GpuError> {
+    let Ok(scene) = load_from("self-test", text.as_bytes(), Path::new(".")) else {
         // A test reads it.
         return Ok(Tried {
             right: vec![[0; 3]],
@@ -84,7 +119,7 @@ pub(super) fn run(gpu: &Gpu) -> Result<Tried, GpuError> {
     };
     let settings = Settings::default();
     Ok(Tried {
-        found: on_device(gpu, &scene, &settings)?,
+        found: on_device(&scene, &settings)?,
         right: referee(&scene, &settings),
     })
 }
@@ -104,20 +139,28 @@ fn referee(scene: &Scene, settings: &Settings) -> Vec<[u8; 3]> {
     bytes.collect()
 }
 
-fn on_device(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Vec<[u8; 4]>, GpuError> {
+/// The scene's pixels, as the device makes them of what is packed.
+fn on_device<F: Format>(
+    gpu: &Gpu,
+    scene: &Scene,
+    packed: &Packed<F>,
+    features: &FeatureSet,
+) -> Result<Vec<[u8; 4]>, GpuError> {
     use wgpu::util::DeviceExt as _;
-    let packed = Packed::new(scene, settings);
-    let features = FeatureSet::new(&packed, settings, gpu.lanes);
-    let wgsl = compose(&packed, &features, Entry::Picture) + ENTRY;
-    let buffers = SceneBuffers::new(gpu, &packed, &features)?;
+    // Then there is a function that makes one pixel.
+    let features = &FeatureSet {
+        quad: true,
+        ..features.clone()
+    };
+    let wgsl = compose(packed, features, Entry::Picture) + ENTRY;
+    let buffers = SceneBuffers::new(gpu, packed, features)?;
     let compiled = gpu.compile(&wgsl, "selftest")?;
-    let pipeline = Pipeline::of(compiled, buffers, &packed, &features);
+    let pipeline = Pipeline::of(compiled, buffers, packed, features);
     let [width, height] = scene.camera.pixeldim;
     let dispatch = Dispatch {
         first: [0, height - 1],
         size: [width, height],
-        zero: 0,
-        room: 0,
+        ..Dispatch::zeroed()
     };
     let dispatch = gpu
         .device

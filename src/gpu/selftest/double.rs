@@ -1,10 +1,11 @@
 //! Whether a device computes with f64 as the stage behind f32 takes for granted: Vulkan promises little of it. Operands
-//! go through `shaders/selftest_double.wgsl`, and the results are judged by the host's f64, which is IEEE's.
+//! go through `shaders/selftest_double.wgsl`, and the results are judged by the host's f64, which is IEEE's; and a small
+//! scene through its composed shader.
 
 mod checks;
 
 use super::operands::{all_with_all, random};
-use super::{Outcome, WORKGROUP, judging};
+use super::{Outcome, WORKGROUP, composed, judging};
 use crate::gpu::GpuError;
 use crate::gpu::device::Gpu;
 use crate::shader::literal::literal_of_f64;
@@ -93,7 +94,7 @@ pub(super) fn version() -> u64 {
         .iter()
         .map(|pair| pair.map(f64::to_bits))
         .collect();
-    judging::version(CHECKS, (SHADER, bits))
+    judging::version(CHECKS, (SHADER, composed::LIT_SCENE, bits))
 }
 
 /// Runs the shader on the device and judges what it wrote. Only for devices that have f64.
@@ -103,7 +104,9 @@ pub(super) fn run(gpu: &Gpu) -> Result<Vec<Outcome>, GpuError> {
     let mut results = compute(gpu, &pairs)?;
     #[cfg(test)]
     super::tests::spoil_double(&mut results);
-    Ok(judge(&pairs, &results))
+    let mut outcomes = judge(&pairs, &results);
+    outcomes.push(composed::judge(&composed::run_double(gpu)?));
+    Ok(outcomes)
 }
 
 fn compute(gpu: &Gpu, pairs: &[[f64; 2]]) -> Result<Vec<u64>, GpuError> {

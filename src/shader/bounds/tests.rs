@@ -1,8 +1,8 @@
-//! Literal bounds of forms at the ends of what f32 can hold.
+//! Literal bounds of forms at the ends of what a format can hold.
 
 use super::*;
 use crate::real::Real as _;
-use crate::shader::format::Single;
+use crate::shader::format::{Double, Single};
 
 const SCREEN: Screen = Screen {
     pixels: [1 << 20, 1],
@@ -10,50 +10,77 @@ const SCREEN: Screen = Screen {
     lattice: 1.0,
 };
 
-/// Forms whose coefficients f32 cannot hold, or a device may take for 0, over pictures so wide that it matters.
+/// Forms whose coefficients the format cannot hold, or a device may take for 0, over pictures so wide that it matters.
 #[test]
 fn coefficients_that_are_flushed_are_within_the_bound() {
-    let x = f64::from(1 << 20);
-    for exponent in [-127.0_f64, -140.0, -300.0] {
-        let tiny = Bounded::exact(exponent.exp2());
-        let zero = Bounded::zero();
-        let all_of_it = tiny.value * x * x;
-        let (_, error) =
-            quadratic::<Single>([tiny, zero, zero, zero, zero, zero], [x, 0.0], &SCREEN);
-        assert!(error > all_of_it, "{error:e} {all_of_it:e}");
-        let (_, error) = linear::<Single>([tiny, zero, zero], [x, 0.0], &SCREEN);
-        assert!(error > tiny.value * x);
+    fn tried<F: Format>(exponents: [f64; 3]) {
+        let x = f64::from(1 << 20);
+        for tiny in exponents.map(f64::exp2) {
+            let (form, zero) = (F::Number::exact(tiny), F::Number::zero());
+            let all_of_it = tiny * x * x;
+            let (_, error) =
+                quadratic::<F>([form, zero, zero, zero, zero, zero], [x, 0.0], &SCREEN);
+            assert!(error > all_of_it, "{error:e} {all_of_it:e}");
+            let (_, error) = linear::<F>([form, zero, zero], [x, 0.0], &SCREEN);
+            assert!(error > tiny * x);
+        }
     }
+    tried::<Single>([-127.0, -140.0, -300.0]);
+    tried::<Double>([-300.0, -1022.0, -1074.0]);
 }
 
 /// k roundings of a term make a little more than k·ROUNDING of it, and the bound itself is rounded k times more in
 /// the comparison.
 #[test]
 fn what_follows_the_first_order_is_within_the_bound() {
-    let one = Bounded::exact(1.0);
-    let sampled = Screen {
+    fn tried<F: Format>() {
+        let one = F::Number::exact(1.0);
+        let sampled = Screen {
+            margin: 0.5,
+            ..SCREEN
+        };
+        let bounds = [
+            (
+                LINEAR_ROUNDINGS,
+                linear::<F>([one; 3], [1.0; 2], &SCREEN).1,
+                3.0,
+            ),
+            (
+                SAMPLED_QUADRATIC_ROUNDINGS,
+                quadratic::<F>([one; 6], [1.0; 2], &sampled).1,
+                6.0,
+            ),
+        ];
+        for (roundings, bound, terms) in bounds {
+            // A result r is off from the exact one by ROUNDING·|r| at most: by a factor of 1/(1 − ROUNDING).
+            let grown = -roundings * (-F::ROUNDING).ln_1p();
+            let (off, left) = (grown.exp_m1(), bound * (-grown).exp());
+            assert!(terms * off < left, "{roundings}");
+            // FLOOR is all that is more.
+            assert!(left - FLOOR * GROWTH < 1.001 * terms * off);
+        }
+    }
+    tried::<Single>();
+    tried::<Double>();
+}
+
+/// Offsets that are handed over are rounded to f32 on their way to a device; f64 has them as they are.
+#[test]
+fn offsets_that_are_rounded_count() {
+    let given = Screen {
         margin: 0.5,
+        lattice: 0.0,
         ..SCREEN
     };
-    let bounds = [
-        (
-            LINEAR_ROUNDINGS,
-            linear::<Single>([one; 3], [1.0; 2], &SCREEN).1,
-            3.0,
-        ),
-        (
-            SAMPLED_QUADRATIC_ROUNDINGS,
-            quadratic::<Single>([one; 6], [1.0; 2], &sampled).1,
-            6.0,
-        ),
-    ];
-    for (roundings, bound, terms) in bounds {
-        // A result r is off from the exact one by ROUNDING·|r| at most: by a factor of 1/(1 − ROUNDING).
-        let off = (1.0 - ROUNDING).powf(-roundings) - 1.0;
-        let left = bound * (1.0 - ROUNDING).powf(roundings);
-        assert!(terms * off < left, "{roundings}");
-        assert!(left < 1.001 * terms * off);
-    }
+    assert_eq!(given.offset_error::<Single>(), OFFSET_ERROR);
+    assert_eq!(given.offset_error::<Double>(), 0.0);
+    assert_eq!(SCREEN.offset_error::<Single>(), 0.0);
+    let slope = |screen| linear::<Single>([Bounded::exact(1.0); 3], [1.0; 2], screen).1;
+    let computed = Screen {
+        lattice: 1.0 / 1024.0,
+        ..given
+    };
+    assert!(slope(&given) > slope(&computed) + 1.9 * OFFSET_ERROR);
 }
 
 /// The f32 next below: less than a result may be.

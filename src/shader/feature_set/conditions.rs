@@ -105,6 +105,8 @@ impl<'a> Conditions<'a> {
             Feature::Bvh => sphere_tree || triangle_tree,
             Feature::SphereTree => sphere_tree,
             Feature::TriangleTree => triangle_tree,
+            // Quadrics come behind planes, and may be flat.
+            Feature::Unordered => triangle_tree || (set.quadrics && light.planes),
             Feature::FirstOrder => certified && !lit && (tiled || textured || pplane || psphere),
             Feature::Certified => certified,
             Feature::Moving => any && set.moving,

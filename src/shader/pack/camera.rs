@@ -28,8 +28,8 @@ pub(super) fn camera<F: Format>(
         let worst = most.min((d * d + o * o).sqrt());
         4.0 * worst * o / (d * d + (worst - o) * (worst - o))
     });
-    // Offsets that were rounded to f32 move W, whose length is at least d.
-    let moved = camera.step.map(upper_bound).iter().sum::<f64>() * screen.offset_error();
+    // Offsets that were rounded move W, whose length is at least d.
+    let moved = camera.step.map(upper_bound).iter().sum::<f64>() * screen.offset_error::<F>();
     PackedCamera {
         numbers: F::record(CameraNumbers {
             anchor: camera.anchor,

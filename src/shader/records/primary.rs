@@ -182,8 +182,12 @@ records! {
         size: [u32; 2],
         /// 0, which only the host knows.
         zero: u32,
-        /// Records that the list of pixels with doubtful samples has room for; 0 where there is no list.
+        /// Records that the list of pixels in doubt has room for; 0 where there is no list.
         room: u32,
+        /// Records that f64 is to take: no more than there is room for.
+        taken: u32,
+        /// Nothing.
+        pad: Pad1,
     }
 
     /// The camera. Its numbers stand in the text of the shader, or behind `Dispatch` while it moves.

@@ -227,7 +227,7 @@ fn a_camera_that_moves_stands_behind_the_dispatch() {
             dispatch.size + field.offset,
         )
     });
-    assert_eq!(members[4..], behind.collect::<Vec<_>>());
+    assert_eq!(members[5..], behind.collect::<Vec<_>>());
     assert_eq!(span, dispatch.size + camera.size);
 }
 

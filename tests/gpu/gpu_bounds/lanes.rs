@@ -7,7 +7,7 @@ use std::sync::Arc;
 use plumb::certify::lanes::doubles::DoubleLanes;
 use plumb::certify::lanes::{Lanes, OPEN};
 use plumb::cpu::pixel::ExactTracer;
-use plumb::jitter::{Jitter, Sampling};
+use plumb::jitter::Jitter;
 use plumb::render::{SamplePattern, Settings};
 use plumb::scene::Scene;
 use plumb::shader::pack::Packed;
@@ -157,49 +157,68 @@ fn what_lanes_are_sure_of_pixels_of_several_samples_is_right() {
     }
 }
 
-/// In f64, of all pixels, whether f32 is sure of them or not.
-#[test]
-fn what_f64_is_sure_of_is_right_and_the_same_in_all_widths() {
-    let settings = Settings::default();
+/// In f64, of all pixels, whether f32 is sure of them or not: of a sample each, or of several.
+fn count_in_f64(settings: &Settings, every: usize) -> (Count, usize) {
     let limits = settings.sample_limits();
-    let [width, height] = SIZE;
+    let size = settings.supersampling().map_or(SIZE, |_| SMALL);
+    let [width, height] = size;
+    let jitter = settings.sampling(width, height);
+    let rows: Vec<_> = (0..height).map(|y| jitter.row(y)).collect();
     let places: Vec<[u32; 2]> = (0..height)
         .flat_map(|y| (0..width).map(move |x| [x, y]))
         .collect();
     let (mut count, mut scenes) = (Count::default(), 0);
     for path in common::good_scenes() {
         let mut scene = common::read(&path);
-        scene.camera.pixeldim = SIZE;
-        if !DoubleLanes::may_be(&scene, &settings) {
+        scene.camera.pixeldim = size;
+        if !DoubleLanes::may_be(&scene, settings) {
             continue;
         }
-        let Some(lanes) = DoubleLanes::new(&scene, &settings) else {
+        let Some(lanes) = DoubleLanes::new(&scene, settings) else {
             continue;
         };
         scenes += 1;
+        let exact_tracer = ExactTracer::new(&scene, settings.view());
         let words = |(name, lanes): (&'static str, DoubleLanes)| {
-            let mut words = vec![0; places.len()];
-            lanes.pixels(&places, &mut words);
+            let words = common::words_in_f64(&lanes, &exact_tracer, settings, &places, size);
             (name, words)
         };
         let all: Vec<_> = lanes.with_each_vector().into_iter().map(words).collect();
-        same_in_all_widths(&path, &all, walks(&Packed::new(&scene, &settings)));
+        same_in_all_widths(&path, &all, walks(&Packed::new(&scene, settings)));
         let (_, first) = &all[0];
-        let exact_tracer = ExactTracer::new(&scene, settings.view());
         // Where f64 alone decides is what `certified` and `random_scenes` ask the oracle.
-        for (word, [x, y]) in first.iter().zip(&places).step_by(11) {
+        for (word, [x, y]) in first.iter().zip(&places).step_by(every) {
             count.pixels += 1;
             if *word < OPEN {
-                let exact = exact_tracer.trace(&limits, Sampling::Once, *x, *y);
+                let row = rows[*y as usize].as_deref();
+                let sampling = jitter.pixel(row, width as usize, *x as usize);
+                let exact = exact_tracer.trace(&limits, sampling, *x, *y);
                 let [red, green, blue, _] = word.to_le_bytes();
                 count.sure += 1;
                 count.wrong += usize::from([red, green, blue] != exact.unwrap().bytes);
             }
         }
     }
-    println!("{scenes} scenes in f64: {count:?}");
-    assert!(scenes > 60, "{scenes} scenes");
-    assert_eq!(count.wrong, 0, "{count:?}");
-    // The others are ties, what is made to be hard, and rays that are more than the lanes follow.
-    assert!(count.sure * 100 > count.pixels * 95, "{count:?}");
+    (count, scenes)
+}
+
+#[test]
+fn what_f64_is_sure_of_is_right_and_the_same_in_all_widths() {
+    for (samples, jitter, every) in [
+        (1, SamplePattern::Hash, 11),
+        (5, SamplePattern::Hash, 7),
+        (3, SamplePattern::Course, 5),
+    ] {
+        let settings = Settings {
+            samples,
+            jitter,
+            ..Settings::default()
+        };
+        let (count, scenes) = count_in_f64(&settings, every);
+        println!("{samples} samples, {jitter:?}, {scenes} scenes in f64: {count:?}");
+        assert!(scenes > 60, "{scenes} scenes");
+        assert_eq!(count.wrong, 0, "{count:?}");
+        // The others are ties, what is made to be hard, and rays that are more than the lanes follow.
+        assert!(count.sure * 100 > count.pixels * 90, "{count:?}");
+    }
 }

@@ -118,8 +118,7 @@ pub(crate) fn count(
     let dispatch = Dispatch {
         first: [0, height - 1],
         size: [width, height],
-        zero: 0,
-        room: 0,
+        ..bytemuck::Zeroable::zeroed()
     };
     let dispatch = gpu
         .device

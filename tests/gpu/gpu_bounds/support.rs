@@ -227,8 +227,7 @@ fn dispatch() -> Vec<u8> {
     let dispatch = Dispatch {
         first: [0; 2],
         size: [1; 2],
-        zero: 0,
-        room: 0,
+        ..bytemuck::Zeroable::zeroed()
     };
     bytemuck::bytes_of(&dispatch).to_vec()
 }

@@ -1568,15 +1568,17 @@ pub(super) fn nearer_secondary<'a, S: Simd>(
     group: U<S>,
     range: Range<S>,
 ) {
-    let fresh = group.ne(closest.group) | object.lt(closest.object);
+    let same = group.eq(closest.group);
+    let fresh = !same | object.lt(closest.object);
     let mut hit = intersection.hit & fresh;
     let mut possible = intersection.possible & fresh;
     let from_start = range.beyond.eq(scene.f64(0.0));
     possible = possible & (from_start | (intersection.high - range.beyond).gt(-range.beyond_error));
     hit = hit & (from_start | (intersection.low - range.beyond).gt(range.beyond_error));
-    let takes = hit & intersection.t.lt(closest.t);
     let low = possible.select(intersection.low, scene.f64(constants::T_MAX));
-    closest.rival = closest.rival.min(takes.select(closest.low, low));
+    let takes = hit & (intersection.t.lt(closest.t) | same);
+    let rival = takes.select(same.select(scene.f64(constants::T_MAX), closest.low), low);
+    closest.rival = closest.rival.min(rival);
     closest.low = takes.select(low, closest.low);
     closest.error = takes.select(intersection.error, closest.error);
     closest.group = takes.select(group, closest.group);
