@@ -263,11 +263,12 @@ fn quadric_hits(quadric: Quadric, ray: Ray) -> PrimaryIntersection {
 //#if certified
     let seen = QuadricRay(vec3f(0.0), unit_direction(ray), 0.0, 0.0, DIR_ERROR, 0.0, 0.0);
     let met = quadric_meets(quadric, seen, -1.0, 0.0);
-    intersection.hit = met.hit & (met.t > FIRST_ORDER * met.error);
+    intersection.hit = met.hit & (met.t > FIRST_ORDER * met.error) & (met.t > NEAREST);
     intersection.possible = met.possible;
-    // What is not hit for sure may be as near as `low`.
+    // What is not hit for sure may be as near as `low`, or nearer than all else.
     let nearest = max(select(met.low, met.t, intersection.hit), NEAREST);
-    intersection.inverse = length / nearest;
+    let is_closest = !intersection.hit & (met.low < NEAREST);
+    intersection.inverse = select(length / nearest, CLOSEST, is_closest);
     intersection.error = intersection.inverse
         * (select(0.0, SECOND_ORDER * met.error / nearest, intersection.hit) + LENGTH_ERROR);
 //#else

@@ -157,7 +157,6 @@ impl<R: Real> Plane<R> {
 }
 
 /// The vertices, from the viewpoint in units of 2^scale.
-/// Its vertices, from the viewpoint in units of 2^scale.
 pub(super) fn corners<R: Real>(triangle: &Triangle, viewpoint: DVec3, scale: i32) -> [V3<R>; 3] {
     let unit = R::exact(two_to(-scale));
     let corner = |vertex| (V3::exact(vertex) - V3::exact(viewpoint)) * unit;
@@ -217,9 +216,12 @@ impl<R: Real> WorldPlane<R> {
         let n = normal::<R>(triangle);
         let extent = Extent::Triangle(Box::new(EDGES.map(|[i, j]| {
             let row = sized(n.cross(sized(edge(triangle, i, j))));
+            // Both ends have the same, and the nearer one has it with fewer bits lost.
+            let far = |k: usize| corners[k].to_f64().length_squared();
+            let near = if far(j) < far(i) { j } else { i };
             HalfPlane {
                 row,
-                origin: row.dot(corners[i]),
+                origin: row.dot(corners[near]),
             }
         })));
         let direction = if is_turned(triangle) { -n } else { n };

@@ -101,6 +101,10 @@ pub(super) fn nearest_f32_by_middle<R: Real>(
     } else {
         (low.next_down(), low)
     };
+    if low <= 0.0 && high >= 0.0 && number.sign()? == Ordering::Equal {
+        // Around 0 there are as many f32 as elsewhere in all.
+        return Ok(0.0);
+    }
     if high != low.next_up() {
         return Err(Undecided);
     }

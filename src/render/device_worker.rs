@@ -24,7 +24,6 @@ use crate::gpu::bands::DISPATCH_SECONDS;
 use crate::gpu::device::Gpu;
 use crate::gpu::double::DoubleStage;
 use crate::shader::constants::LOOP_ITERATIONS;
-use crate::shader::feature_set::FeatureSet;
 use crate::stopwatch::Phases;
 
 /// Bands that a device is given at once: two that it works on, and one that is being finished.
@@ -192,7 +191,8 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                     return Gone::Done;
                 }
                 if let Some(double) = &double {
-                    self.make_double(device, devices, features, Arc::clone(double));
+                    let packed = (rendering.packed(), rendering.packed_in_f64());
+                    devices.make_double(device, packed, features, Arc::clone(double));
                 }
                 let gone = self.serve(here, orders, &heights, news, double.as_deref());
                 if matches!(gone, Gone::Fault(GpuError::Silent { .. })) {
@@ -223,25 +223,6 @@ impl<'a, 'r> DeviceWorker<'a, 'r> {
                 self.serve(here, orders, &heights, news, None)
             }),
         }
-    }
-
-    /// Has the stage in f64 made, while the device is at work without it.
-    fn make_double(
-        &self,
-        device: &Arc<Device>,
-        devices: &Devices,
-        features: FeatureSet,
-        double: Arc<DoubleStage>,
-    ) {
-        let (single, in_f64) = (self.rendering.packed(), self.rendering.packed_in_f64());
-        let device = Arc::clone(device);
-        let make = move || {
-            if let Err(error) = double.make(&device.gpu, (&single, &in_f64), features) {
-                log::info!("{} makes no pixels in f64: {error}", device.gpu.name);
-            }
-        };
-        // Without it the CPU decides what it would have decided.
-        let _ = devices.spawn("f64", make);
     }
 
     /// Orders rows, and finishes what comes. The device's thread ends when nobody can order any more.

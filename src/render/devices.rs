@@ -13,10 +13,12 @@ use crate::gpu::GpuError;
 use crate::gpu::adapters;
 use crate::gpu::candidates::{Candidates, candidates};
 use crate::gpu::device::Gpu;
+use crate::gpu::double::DoubleStage;
 use crate::gpu::pipeline::Compiled;
 use crate::settings::{Precision, Settings};
 use crate::shader::compose::{Entry, compose};
 use crate::shader::feature_set::FeatureSet;
+use crate::shader::format::Double;
 use crate::shader::pack::Packed;
 use crate::stopwatch::{Phase, Phases, Stopwatch};
 
@@ -168,6 +170,24 @@ impl Devices {
                     .get(gpu, &compose(packed, &features, Entry::Picture));
             }
         }
+    }
+
+    /// Has the stage in f64 made for a scene in both formats, while the device is at work without it.
+    pub(super) fn make_double(
+        &self,
+        device: &Arc<Device>,
+        (single, in_f64): (Arc<Packed>, Packed<Double>),
+        features: FeatureSet,
+        double: Arc<DoubleStage>,
+    ) {
+        let device = Arc::clone(device);
+        let make = move || {
+            if let Err(error) = double.make(&device.gpu, (&single, &in_f64), features) {
+                log::info!("{} makes no pixels in f64: {error}", device.gpu.name);
+            }
+        };
+        // Without it the CPU decides what it would have decided.
+        let _ = self.spawn("f64", make);
     }
 
     /// Starts a thread that is waited for only when this is dropped.

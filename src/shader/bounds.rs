@@ -114,8 +114,10 @@ named! {
     QUOTIENT_GROWTH = 1.15, at least 8.0 / 7.0;
     /// What is added to the bounds of divisors, so that no quotient overflows.
     LEAST_SLOPE = 1.0 / (1_u64 << 40) as f64;
-    /// Primary hits on quadrics nearer than this are as if they were there.
+    /// Primary hits on quadrics nearer than this are left to the CPU.
     NEAREST = 1.0 / (1_u64 << 40) as f64;
+    /// 1/s of what may be so near: larger than that of anything else.
+    CLOSEST = (1_u128 << 100) as f64;
     /// Roundings of a unit normal.
     NORMAL_ROUNDINGS = 7.5, at least 7.0;
     /// Roundings of a vector after a step towards unit length, which it nearly had; of its length alone one less.

@@ -200,6 +200,25 @@ fn values_are_the_nearest_f32() {
     }
 }
 
+/// A channel that is 0, and not because nothing is added: the f32 around it are not neighbours, and it is known all the
+/// same.
+#[test]
+fn a_value_of_0_is_the_nearest_f32() {
+    let scene = scene(
+        "camera c { pixeldim 17 13 worlddim 8 6 viewpoint 4 3 6 }
+         material m1 { ambient 3 6 0.5 }
+         pplane o { material m1 normal 3 0 4 point 7.5 1 -1 shader 2 }",
+    );
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0)).with_values(true);
+    let limits = Limits {
+        enough: f64::INFINITY,
+        ..Limits::default()
+    };
+    let decided = exact_tracer.trace(&limits, Sampling::Once, 14, 11).unwrap();
+    assert_ne!(decided.by, DecidedBy::Presumed);
+    assert_eq!((decided.bytes[0], decided.value[0]), (0, 0.0));
+}
+
 /// A pixel part of whose samples is known: the others alone are traced, and its bytes are those of the whole. A part
 /// that is off, or that says it holds a sample more than it does, is seen in the bytes.
 #[test]

@@ -143,11 +143,9 @@ fn little_is_left_behind_f64() {
         ("lit/procedural_lit.txt", 1, 10),
         ("lit/magic_lantern.txt", 1, 10),
         ("gallery/procedural_all.txt", 1, 20),
-        ("lit/mirror_and_glass.txt", 5, 10),
         ("gallery/quadric_chess.txt", 3, 10),
         // Of these bits take two words.
         ("lit/glint.txt", 40, 10),
-        ("gallery/procedural_all.txt", 4, 20),
     ] {
         let size = if samples > 1 { [120, 90] } else { [320, 240] };
         let (scene, settings) = scene(name, Some(size), samples);

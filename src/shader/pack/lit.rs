@@ -5,7 +5,7 @@ use super::{Packed, factor, factors, nearest};
 use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Real as _, V3};
-use crate::shader::bounds::{LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, upper_bound};
+use crate::shader::bounds::{GROWTH, LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, upper_bound};
 use crate::shader::format::{Format, Known, Single};
 use crate::shader::records::wide::{
     Light, LitObject, Material, Projector, WorldPlane, WorldSphere,
@@ -243,14 +243,31 @@ fn low_light<F: Format>(plane: &prepare::WorldPlane<F::Number>) -> Option<(u32, 
     known.then_some((1 << light, height.nearest()))
 }
 
+/// Beyond every position that a ray is followed to: stands for no border, or no end.
+pub(super) const BEYOND: f64 = (1_u64 << 60) as f64;
+
+/// Whether what is known of numbers of this size is so much that their rounding to the format is more than all the rest:
+/// bounds count a rounding, and have little room beside.
+fn known<F: Format>(numbers: &[F::Number], size: f64) -> bool {
+    // A NaN fails this comparison.
+    numbers.iter().all(|n| n.off() <= F::U / 64.0 * size)
+}
+
+/// The same of a vector of unit length.
+fn known_direction<F: Format>(v: V3<F::Number>) -> bool {
+    known::<F>(&[v.x, v.y, v.z], 1.0)
+}
+
 /// The end of a plane, as its record has it.
 struct Bounds<F: Format> {
     bounded: u32,
     rows: [V3<F::Number>; 2],
     origin: [F::Number; 2],
     lengths: [F::Number; 2],
-    /// The largest of the numbers that are subtracted.
+    /// The largest of the numbers that are subtracted; infinite where they are not known well enough.
     most: f64,
+    /// How far these may be off before they are rounded.
+    off: f64,
 }
 
 /// The end of a plane; a triangle's third side is put among the others.
@@ -264,13 +281,20 @@ fn bounds<F: Format>(extent: &Extent<F::Number>, third_sides: &mut Vec<[f64; 4]>
             origin: [none; 2],
             lengths: [none; 2],
             most: 0.0,
+            off: 0.0,
         },
         Extent::Rectangle(r) => Bounds {
             bounded: 1,
             rows: r.rows,
             origin: r.origin,
             lengths: r.dimensions,
-            most: larger_bound(r.origin) + larger_bound(r.dimensions),
+            // Lengths alone are not looked at for their range, as triangles have none.
+            most: if larger_bound(r.dimensions) <= LARGEST {
+                larger_bound(r.origin) + larger_bound(r.dimensions)
+            } else {
+                f64::INFINITY
+            },
+            off: larger(r.origin.map(Known::off)) + larger(r.dimensions.map(Known::off)),
         },
         Extent::Triangle(sides) => {
             let unit = |side: &HalfPlane<F::Number>| {
@@ -284,17 +308,20 @@ fn bounds<F: Format>(extent: &Extent<F::Number>, third_sides: &mut Vec<[f64; 4]>
             let [x, y, z] = nearest(third.0);
             third_sides.push([x, y, z, third.1.nearest()]);
             let origin = upper_bound(third.1);
+            let sides = [first, second, third];
+            let rows = sides.iter().all(|side| known_direction::<F>(side.0));
             Bounds {
                 bounded: 1 + third_sides.len() as u32,
                 rows: [first.0, second.0],
                 origin: [first.1, second.1],
-                lengths: [F::Number::exact(LARGEST); 2],
+                lengths: [F::Number::exact(BEYOND); 2],
                 // No record has the third one, whose range would be looked at.
-                most: if origin <= LARGEST {
+                most: if rows && origin <= LARGEST {
                     larger([larger_bound([first.1, second.1]), origin])
                 } else {
                     f64::INFINITY
                 },
+                off: sides.iter().map(|side| side.1.off()).fold(0.0, f64::max),
             }
         }
     }
@@ -322,7 +349,14 @@ fn world_plane<F: Format>(
         origin,
         lengths,
         most,
+        off,
     } = bounds::<F>(&plane.extent, third_sides);
+    let offset = plane.offset.nearest().abs();
+    let most = if known_direction::<F>(plane.normal) && known::<F>(&[plane.offset], offset) {
+        most
+    } else {
+        f64::INFINITY
+    };
     let (low_light, height) = low_light::<F>(plane).unwrap_or((0, 0.0));
     WorldPlane {
         normal: nearest(plane.normal),
@@ -339,7 +373,7 @@ fn world_plane<F: Format>(
         lights_on_surface: bits(&plane.lights_on_surface),
         bounded,
         highest,
-        sides_error: F::round_up(SIDES_ROUNDINGS * F::U * most),
+        sides_error: F::round_up(SIDES_ROUNDINGS * F::U * most + GROWTH * off),
         low_light,
         height,
     }

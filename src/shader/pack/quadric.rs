@@ -1,6 +1,6 @@
 //! Quadrics for all rays: their equations about a point near them, which f32 has exactly.
 
-use super::lit::{bits, size};
+use super::lit::{BEYOND, bits, size};
 use crate::prepare::local_quadric::{Local, local};
 use crate::prepare::{self, Prepared};
 use crate::real::{Real as _, V3};
@@ -8,9 +8,6 @@ use crate::scene::Scene;
 use crate::shader::bounds::upper_bound;
 use crate::shader::format::{Format, Known as _};
 use crate::shader::records::wide::Quadric;
-
-/// Stands for no border: beyond every position that a ray is followed to.
-const NO_BORDER: f64 = (1_u64 << 60) as f64;
 
 /// The records of a scene's quadrics.
 pub(super) fn all<F: Format>(
@@ -35,15 +32,18 @@ fn record<F: Format>(
     let nearest = |values: [F::Number; 3]| values.map(|v| v.nearest());
     let [x, y, z] = local.slope;
     let slope = V3::new(x, y, z);
+    let slope_size = size::<F>(slope);
     let center = local.center.map(|c| F::Number::exact(f64::from(c)));
+    // A border that is farther away is as good there, on whichever side of all positions it is.
     let border = |side: usize, none: f64| {
-        let near = |b: &F::Number| b.nearest().abs() < NO_BORDER;
-        let of = |axis: usize| {
-            let border = quadric.borders[axis][side].filter(near);
-            border.map_or(none, |b| b.nearest())
-        };
-        [of(0), of(1), of(2)]
+        [0, 1, 2].map(|axis| {
+            let border = quadric.borders[axis][side];
+            border.map_or(none, |b| b.nearest().clamp(-BEYOND, BEYOND))
+        })
     };
+    let [lower, upper] = [border(0, -BEYOND), border(1, BEYOND)];
+    let known = lower.iter().chain(&upper).all(|border| !border.is_nan());
+    let size = size::<F>(V3::new(center[0], center[1], center[2]));
     Quadric {
         center: local.center.map(f64::from),
         object: quadric.object as u32,
@@ -56,10 +56,11 @@ fn record<F: Format>(
         adjoint_beside: nearest([local.adjoint[3], local.adjoint[4], local.adjoint[5]]),
         adjoint_norm: norm::<F>(&local.adjoint),
         slope: [slope.x, slope.y, slope.z].map(|v| v.nearest()),
-        slope_size: size::<F>(slope),
-        lower: border(0, -NO_BORDER),
-        size: size::<F>(V3::new(center[0], center[1], center[2])),
-        upper: border(1, NO_BORDER),
+        slope_size,
+        lower,
+        // Where a border is not known, nor is the scene taken: this number's range is looked at.
+        size: if known { size } else { f64::INFINITY },
+        upper,
         lights_on_surface: bits(&quadric.lights_on_surface),
     }
 }

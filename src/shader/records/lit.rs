@@ -117,6 +117,7 @@ records! {
         /// What is subtracted.
         origin_1: f32,
         /// Lengths of the sides; of a triangle, more than any.
+        #[any_size = "a number beyond all positions stands for no end, and it is only compared"]
         lengths: [f32; 2],
         /// Bit i: light i lies in the plane.
         lights_on_surface: u32,

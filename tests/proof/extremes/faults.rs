@@ -1,8 +1,9 @@
 //! One scene for each way in which extreme numbers made a wrong byte that was called certain.
 
-use plumb::render::{SamplePattern, Settings};
+use plumb::render::{Backend, SamplePattern, Settings};
 
 use super::{cpu, picture, scene};
+use crate::common;
 use crate::oracle::{self, Rules, differences};
 
 /// Every pixel is decided, and as the oracle has it.
@@ -172,4 +173,86 @@ fn the_faintest_ray_may_decide_a_byte() {
     let mut settings = cpu();
     settings.limits.max_path = 12.0;
     certified(text, &settings);
+}
+
+/// The same on the CPU and on the GPU, up to this z.
+fn certified_on_both(text: &str, screen_tolerance: f64) {
+    for backend in [Backend::Cpu, Backend::Gpu] {
+        let settings = Settings {
+            screen_tolerance,
+            ..common::on(backend)
+        };
+        certified(text, &settings);
+    }
+}
+
+/// A border of a quadric beyond all positions cuts away all or nothing, by the side on which it is.
+#[test]
+fn borders_beyond_all_positions_are_borders() {
+    let quadric = |borders: &str, light: &str| {
+        format!(
+            "camera c {{ pixeldim 20 15 worlddim 8 6 viewpoint 4 3 6 }}
+             material a {{ ambient 5 1 1 diffuse 4 4 4 }} material b {{ ambient 1 5 1 diffuse 4 4 4 }}
+             quadric q {{ material a coefficients 1 1 1 0 0 0 -8 -6 10 -49 {borders} }}
+             plane back {{ material b normal 0 0 1 point 0 0 -9 }} {light}"
+        )
+    };
+    let lamp = "light l { location 4 5 3 emissivity 4 4 4 }";
+    for light in ["", lamp] {
+        for borders in [
+            "lower 1e20 -99 -99 upper 2e20 99 99",
+            "lower -1e300 -99 -99 upper -1e20 99 99",
+            "lower -1e20 -99 -99 upper 1e300 99 99",
+        ] {
+            certified_on_both(&quadric(borders, light), 0.0);
+        }
+        // All that is seen is in front of that.
+        certified_on_both(&quadric("", light), -1e25);
+    }
+}
+
+/// The sides of a triangle may be farther apart than any number of a record.
+#[test]
+fn triangles_end_nowhere_but_at_their_sides() {
+    let text = "camera c { pixeldim 20 15 worlddim 0.03 0.02 viewpoint 0.015 0.01 0.0234375 }
+        material a { ambient 0.2 0.2 0.2 diffuse 8192 8192 8192 }
+        material b { ambient 1 1 1 diffuse 1 1 1 }
+        plane floor { material a normal 0 1 0 point 0 -0.015625 0 }
+        triangle far { material b vertex1 10307921510.4 -15461882265.6 -12025908428.8
+            vertex2 10307921510.4 -15461882265.6 5153960755.2 vertex3 10307921510.4 42949672960 -3435973836.8 }
+        light l { location 10995116277.76 10995116277.76 -3435973836.8 emissivity 8000 8000 8000 }";
+    certified_on_both(text, 0.0);
+}
+
+/// Of a triangle with a far vertex f64 knows its sides less well, and so does what is made of them.
+#[test]
+fn sides_to_far_vertices_are_where_they_are() {
+    for far in ["1e12", "1e14", "1e15", "1e18"] {
+        let text = format!(
+            "camera c {{ pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }}
+             material a {{ ambient 0.2 0.2 0.2 diffuse 10 10 10 }} material b {{ ambient 1 1 1 diffuse 1 1 1 }}
+             plane floor {{ material a normal 0 1 0 point 0 -1 0 }}
+             triangle far {{ material b vertex1 1.1 12 -6 vertex2 3 12 -4.2 vertex3 {far} 12 -{far} }}
+             light l {{ location 4.3 32 -5 emissivity 80 80 80 }}"
+        );
+        certified_on_both(&text, 0.0);
+    }
+}
+
+/// Where hits before the screen count, a quadric may be met next to the viewpoint: it is as bright as it is there, and
+/// nearer than what is farther.
+#[test]
+fn quadrics_next_to_the_viewpoint_are_seen() {
+    let camera = "camera c { pixeldim 20 15 worlddim 8 6 viewpoint 4 3 4 }";
+    let alone = format!(
+        "{camera} material a {{ ambient 1.09e-12 1.27e-12 1.18e-12 }}
+         quadric q {{ material a coefficients 0 0 0 0 0 0 0 0 1 3.999999999998181 }}"
+    );
+    certified_on_both(&alone, 10.0);
+    let beside = format!(
+        "{camera} material a {{ ambient 1e-12 1e-12 1e-12 }} material b {{ ambient 0 0 1e-12 }}
+         plane p {{ material a normal 1 0 0 point 4.00000000000047 0 0 }}
+         quadric q {{ material b coefficients 0 0 0 0 0 0 0 0 1 3.9999999999991 }}"
+    );
+    certified_on_both(&beside, 10.0);
 }

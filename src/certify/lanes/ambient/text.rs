@@ -37,6 +37,7 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const QUOTIENT_GROWTH: f32 = 1.1500001;
     pub(in crate::certify::lanes) const LEAST_SLOPE: f32 = 9.094947e-13;
     pub(in crate::certify::lanes) const NEAREST: f32 = 9.094947e-13;
+    pub(in crate::certify::lanes) const CLOSEST: f32 = 1.2676506e30;
     pub(in crate::certify::lanes) const NORMAL_ROUNDINGS: f32 = 7.5;
     pub(in crate::certify::lanes) const CLOSE: f32 = 1.4000001;
     pub(in crate::certify::lanes) const HALF_OPEN: f32 = 0.51000005;
@@ -1419,13 +1420,16 @@ pub(super) fn quadric_hits<'a, S: Simd>(
         start_error: scene.f32(0.0),
     };
     let met = quadric_meets(scene, on, quadric, seen, scene.f32(-1.0), scene.f32(0.0));
-    intersection.hit = met.hit & met.t.gt(constants::FIRST_ORDER * met.error);
+    intersection.hit = met.hit
+        & met.t.gt(constants::FIRST_ORDER * met.error)
+        & met.t.gt(scene.f32(constants::NEAREST));
     intersection.possible = met.possible;
     let nearest = intersection
         .hit
         .select(met.t, met.low)
         .max(scene.f32(constants::NEAREST));
-    intersection.inverse = length / nearest;
+    let is_closest = !intersection.hit & met.low.lt(scene.f32(constants::NEAREST));
+    intersection.inverse = is_closest.select(scene.f32(constants::CLOSEST), length / nearest);
     intersection.error = intersection.inverse
         * (intersection.hit.select(
             constants::SECOND_ORDER * met.error / nearest,

@@ -48,6 +48,7 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const QUOTIENT_GROWTH: f64 = 1.15;
     pub(in crate::certify::lanes) const LEAST_SLOPE: f64 = 9.094947017729282e-13;
     pub(in crate::certify::lanes) const NEAREST: f64 = 9.094947017729282e-13;
+    pub(in crate::certify::lanes) const CLOSEST: f64 = 1.2676506002282294e30;
     pub(in crate::certify::lanes) const NORMAL_ROUNDINGS: f64 = 7.5;
     pub(in crate::certify::lanes) const UNIT_ROUNDINGS: f64 = 5.0;
     pub(in crate::certify::lanes) const AIM_ROUNDINGS: f64 = 6.0;
@@ -2773,13 +2774,16 @@ pub(super) fn quadric_hits<'a, S: Simd>(
         start_error: scene.f64(0.0),
     };
     let met = quadric_meets(scene, on, quadric, seen, scene.f64(-1.0), scene.f64(0.0));
-    intersection.hit = met.hit & met.t.gt(constants::FIRST_ORDER * met.error);
+    intersection.hit = met.hit
+        & met.t.gt(constants::FIRST_ORDER * met.error)
+        & met.t.gt(scene.f64(constants::NEAREST));
     intersection.possible = met.possible;
     let nearest = intersection
         .hit
         .select(met.t, met.low)
         .max(scene.f64(constants::NEAREST));
-    intersection.inverse = length / nearest;
+    let is_closest = !intersection.hit & met.low.lt(scene.f64(constants::NEAREST));
+    intersection.inverse = is_closest.select(scene.f64(constants::CLOSEST), length / nearest);
     intersection.error = intersection.inverse
         * (intersection.hit.select(
             constants::SECOND_ORDER * met.error / nearest,
