@@ -162,7 +162,8 @@ fn quadric_meets(quadric: Quadric, ray: QuadricRay, light: f32) -> QuadricHit {
         + 2.0 * SECOND_ORDER * length_v
             * (length_e * moment_error + (length_m + moment_error) * (passage.turn_error + u * length_e))
         + slope_error * (2.0 * abs(slope) + slope_error) + abs(k) * a_error
-        + u * (all_turned + slope * slope + abs(k) * all_a) + TINY_SQUARE;
+        + u * (all_turned + slope * slope + abs(k) * all_a) + TINY_SQUARE
+        + QUADRIC_FLUSHED * ((length_m + moment_error + length_e) * (length_m + moment_error));
     let least = barrier1(max(disc, disc_error));
     let inverse_root = inverseSqrt(least);
     let root = least * inverse_root;
@@ -263,11 +264,12 @@ fn quadric_hits(quadric: Quadric, ray: Ray) -> PrimaryIntersection {
 //#if certified
     let seen = QuadricRay(vec3f(0.0), unit_direction(ray), 0.0, 0.0, DIR_ERROR, 0.0, 0.0);
     let met = quadric_meets(quadric, seen, -1.0, 0.0);
-    intersection.hit = met.hit & (met.t > FIRST_ORDER * met.error) & (met.t > NEAREST);
+    let limit = NEAREST * length;
+    intersection.hit = met.hit & (met.t > FIRST_ORDER * met.error) & (met.t > limit);
     intersection.possible = met.possible;
     // What is not hit for sure may be as near as `low`, or nearer than all else.
-    let nearest = max(select(met.low, met.t, intersection.hit), NEAREST);
-    let is_closest = !intersection.hit & (met.low < NEAREST);
+    let nearest = max(select(met.low, met.t, intersection.hit), limit);
+    let is_closest = !intersection.hit & (met.low < limit);
     intersection.inverse = select(length / nearest, CLOSEST, is_closest);
     intersection.error = intersection.inverse
         * (select(0.0, SECOND_ORDER * met.error / nearest, intersection.hit) + LENGTH_ERROR);

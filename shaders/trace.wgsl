@@ -73,7 +73,7 @@ fn hit_decides(traced: ptr<function, Traced>, ray: Ray, hit: Hit) -> bool {
     }
 //#else
     let nothing = (hit.inverse + hit.error <= 0.0) & (hit.rival <= 0.0);
-    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse > LEAST_INVERSE)
+    let sure = (hit.inverse - hit.rival > hit.error) & (hit.inverse * ray.inverse_length > LEAST_INVERSE)
         & (hit.inverse > FIRST_ORDER * hit.error);
     if nothing | !sure {
         (*traced).verdict = select(UNDECIDED, 0u, nothing);

@@ -389,3 +389,6 @@ impl<'a> ExactTracer<'a> {
         Ok(Decided { value, bytes, by })
     }
 }
+
+#[cfg(test)]
+mod tests;

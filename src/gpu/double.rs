@@ -87,3 +87,37 @@ impl DoubleStage {
         let _ = self.worth.set(is_worth);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::cpu::pixel::ExactTracer;
+    use crate::scene::parse;
+    use crate::settings::Settings;
+
+    /// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: what is
+    /// packed of them has no stage in f64. `Packed::in_f64` prepares them all.
+    #[test]
+    fn many_objects_have_no_stage() {
+        let mut text = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
+            material m { ambient 3 1 2 }"
+            .to_owned();
+        for i in 0..3000 {
+            let (x, y) = (f64::from(i % 60) / 7.5, f64::from(i / 60) / 8.0);
+            text += &format!("\nsphere s {{ material m center {x} {y} -2 radius 0.05 }}");
+        }
+        let scene = parse("many", text.as_bytes(), Path::new(".")).unwrap();
+        let settings = Settings::default();
+        let tracer = ExactTracer::new(&scene, settings.view());
+        let single = Packed::new(&scene, &settings);
+        assert!(single.screen_grid.is_some() && !single.spheres.is_empty());
+        let on_demand = Packed::<F64>::rounded(tracer.pairs(), &scene, &settings);
+        assert!(!can_be(&single, &on_demand));
+        // Prepared as f32's are, they are the same.
+        let whole = Packed::in_f64(&scene, &settings);
+        assert_eq!(single.counts(), whole.counts());
+        assert!(can_be(&single, &whole));
+    }
+}

@@ -48,7 +48,7 @@ named! {
     TINY_SQUARE = 1.0 / (1_u128 << 110) as f64;
     /// Secondary hits farther than this are left to the CPU.
     FARTHEST = (1_u64 << 40) as f64;
-    /// Primary hits whose 1/s is no more than this are left to the CPU.
+    /// Primary hits whose 1/(s·|W|) is no more than this are left to the CPU: they are farther away than `FARTHEST`.
     LEAST_INVERSE = 1.0 / (1_u64 << 40) as f64;
     /// Directions that are known less well than this are not followed: the bounds are first order there.
     DIR_LIMIT = 1.0 / 128.0;
@@ -114,10 +114,12 @@ named! {
     QUOTIENT_GROWTH = 1.15, at least 8.0 / 7.0;
     /// What is added to the bounds of divisors, so that no quotient overflows.
     LEAST_SLOPE = 1.0 / (1_u64 << 40) as f64;
-    /// Primary hits on quadrics nearer than this are left to the CPU.
+    /// Primary hits on quadrics nearer than this times |W| are left to the CPU.
     NEAREST = 1.0 / (1_u64 << 40) as f64;
     /// 1/s of what may be so near: larger than that of anything else.
     CLOSEST = (1_u128 << 100) as f64;
+    /// What is flushed of a quadric's numbers, for a unit of what its discriminant has for them at most.
+    QUADRIC_FLUSHED = 1.0 / (1_u128 << 122) as f64, at least 1.0 / (1_u128 << 123) as f64;
     /// Roundings of a unit normal.
     NORMAL_ROUNDINGS = 7.5, at least 7.0;
     /// Roundings of a vector after a step towards unit length, which it nearly had; of its length alone one less.
@@ -261,6 +263,8 @@ named! {
     MOST_STEPS = (1_u64 << 22) as f64;
     /// 255 times the value below which a byte is 0 whatever was rounded.
     DARKNESS = 0.9;
+    /// What may be as near as `CLOSEST` is never dark: `dark` is no more than this.
+    MOST_DARK = (1_u64 << 58) as f64;
     /// What the brightest value that a ray may bring is multiplied by, for the roundings of its own.
     BRIGHT_GROWTH = 1.001, at least 1.0001;
 }

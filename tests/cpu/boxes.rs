@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use plumb::cpu::pixel::ExactTracer;
 use plumb::cpu::world::{Range, hits_from};
 use plumb::prepare::boxes::{Bounds, Boxes};
-use plumb::prepare::{Prepared, World};
+use plumb::prepare::{ViewParameters, World};
 use plumb::real::{Bounded, Real, V3};
 use plumb::scene::load_from;
 
@@ -87,7 +88,8 @@ fn with_boxes(world: &World<Bounded>, boxes: Boxes) -> World<Bounded> {
 #[test]
 fn boxes_change_nothing_that_is_met() {
     let scene = load_from("test", SCENE.as_bytes(), Path::new(".")).unwrap();
-    let world = Prepared::<Bounded>::new(&scene, 1e6).world.unwrap();
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(1e6));
+    let world = exact_tracer.bounded().world.clone().unwrap();
     let all = [
         &world.boxes.planes,
         &world.boxes.quadrics,

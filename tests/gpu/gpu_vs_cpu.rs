@@ -4,10 +4,11 @@
 //! the others at least 99.95 % have to be the same. Scenes made so that f32 must fail are named here, with how much
 //! they may.
 
-use plumb::cpu::camera::camera_setpix;
-use plumb::cpu::trace::{Fault, Limits, Unobserved, ray_trace};
-use plumb::prepare::Prepared;
-use plumb::real::{Bounded, Real};
+use plumb::cpu::pixel::ExactTracer;
+use plumb::cpu::trace::Limits;
+use plumb::frame::DecidedBy;
+use plumb::jitter::Sampling;
+use plumb::prepare::ViewParameters;
 use plumb::render::{Backend, Precision, Settings, render};
 
 use crate::common;
@@ -36,16 +37,10 @@ const BEYOND_F32: &[(&str, f64)] = &[
     ("tiles_far_unresolved", 10.0),
 ];
 
-/// The bytes of a pixel where f64 with error bounds is sure of them.
-fn bounded(scene: &Prepared<Bounded>, x: usize, y: usize) -> Result<[u8; 3], Fault> {
-    let traced = ray_trace(
-        scene,
-        &Limits::default(),
-        x as f64,
-        y as f64,
-        &mut Unobserved,
-    )?;
-    Ok(camera_setpix(traced.color)?)
+/// Whether f64 with error bounds is sure of a pixel's bytes.
+fn is_sure(exact_tracer: &ExactTracer<'_>, x: u32, y: u32) -> bool {
+    let decided = exact_tracer.trace(&Limits::default(), Sampling::Once, x, y);
+    decided.is_ok_and(|decided| decided.by == DecidedBy::Bounded)
 }
 
 /// Scenes that need more rays than a sample may have: both tracers have to say so.
@@ -69,7 +64,7 @@ fn measure(path: &std::path::Path) -> Row {
     let (gpu, report) = common::picture(&scene, &fast);
     assert_eq!(report.backend, Backend::Gpu);
     let (cpu, _) = common::picture(&scene, &common::on(Backend::Cpu));
-    let bounds = Prepared::<Bounded>::new(&scene, 0.0);
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let mut row = Row {
         name: path.file_stem().unwrap().display().to_string(),
         pixels: gpu.len() / 3,
@@ -83,8 +78,8 @@ fn measure(path: &std::path::Path) -> Row {
         if g == c {
             continue;
         }
-        let (x, y) = (i % width as usize, height as usize - 1 - i / width as usize);
-        if bounded(&bounds, x, y).is_err() {
+        let (x, y) = (i as u32 % width, height - 1 - i as u32 / width);
+        if !is_sure(&exact_tracer, x, y) {
             row.unsure += 1;
         } else {
             row.differ += 1;
@@ -148,12 +143,12 @@ fn f32_agrees_with_f64() {
 #[test]
 fn the_bounds_are_sure_of_nearly_every_pixel() {
     let scene = common::read(&common::scenes().join("gallery/showcase.txt"));
-    let bounds = Prepared::<Bounded>::new(&scene, 0.0);
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let [width, height] = scene.camera.pixeldim;
     let mut unsure = 0;
     for y in 0..height {
         for x in 0..width {
-            unsure += usize::from(bounded(&bounds, x as usize, y as usize).is_err());
+            unsure += usize::from(!is_sure(&exact_tracer, x, y));
         }
     }
     // A bound that always answers "undecided" would make the comparison above empty.
@@ -161,5 +156,4 @@ fn the_bounds_are_sure_of_nearly_every_pixel() {
         unsure * 200 < (width * height) as usize,
         "{unsure} pixels unsure"
     );
-    assert!(Bounded::exact(1.0).positive().unwrap());
 }

@@ -4,9 +4,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use image::{Rgb, RgbImage};
-use plumb::cpu::camera::camera_getdir;
-use plumb::cpu::trace::find_closest_object;
-use plumb::prepare::Prepared;
+use plumb::cpu::pixel::ExactTracer;
 use plumb::render::Settings;
 use plumb::scene::Scene;
 
@@ -339,11 +337,10 @@ fn what_is_clicked_in_the_gallery_is_selected() {
 /// A pixel of each object that is seen, and one where none is: inside, so that it does not matter to which side of a
 /// border a pixel belongs.
 fn one_pixel_each(scene: &Scene) -> Vec<([u32; 2], Option<usize>)> {
-    let prepared = Prepared::<f64>::new(scene, Settings::default().view());
+    let exact_tracer = ExactTracer::new(scene, Settings::default().view());
     let seen = |x: u32, y: u32| {
-        let ray = camera_getdir(&prepared.camera, f64::from(x), f64::from(y));
-        let hit = find_closest_object(&prepared, &ray).ok().flatten();
-        hit.map(|hit| hit.object)
+        let hit = exact_tracer.first_hit([f64::from(x), f64::from(y)]);
+        hit.ok().flatten().map(|hit| hit.object)
     };
     let mut found: Vec<([u32; 2], Option<usize>)> = Vec::new();
     for y in (4..SIZE[1] - 4).step_by(5) {

@@ -15,7 +15,6 @@ use plumb::render::{Backend, Settings};
 use plumb::scene::Scene;
 use plumb::shader::compose::{Entry, compose};
 use plumb::shader::feature_set::FeatureSet;
-use plumb::shader::format::Double as F64;
 use plumb::shader::pack::Packed;
 
 use crate::common;
@@ -227,30 +226,6 @@ fn a_stage_on_trial_changes_no_byte() {
         ..settings
     };
     assert!(gpu == common::picture(&scene, &alone).0);
-}
-
-/// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: what is
-/// packed of them has no stage in f64. `Packed::in_f64` prepares them all.
-#[test]
-fn many_objects_have_no_stage() {
-    let mut text = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
-        material m { ambient 3 1 2 }"
-        .to_owned();
-    for i in 0..3000 {
-        let (x, y) = (f64::from(i % 60) / 7.5, f64::from(i / 60) / 8.0);
-        text += &format!("\nsphere s {{ material m center {x} {y} -2 radius 0.05 }}");
-    }
-    let scene = plumb::scene::parse("many", text.as_bytes(), &common::scenes()).unwrap();
-    let settings = common::on(Backend::Gpu);
-    let tracer = ExactTracer::new(&scene, settings.view());
-    let single = Packed::new(&scene, &settings);
-    assert!(single.screen_grid.is_some() && !single.spheres.is_empty());
-    let on_demand = Packed::<F64>::rounded(tracer.pairs(), &scene, &settings);
-    assert!(!can_be(&single, &on_demand));
-    // Prepared as f32's are, they are the same.
-    let whole = Packed::in_f64(&scene, &settings);
-    assert_eq!(single.counts(), whole.counts());
-    assert!(can_be(&single, &whole));
 }
 
 /// Where f64 takes its bounds for nothing, it decides what it must not, and the bytes show it.

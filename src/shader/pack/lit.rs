@@ -5,7 +5,7 @@ use super::{Packed, factor, factors, nearest};
 use crate::prepare::extent::{Extent, HalfPlane};
 use crate::prepare::{self, Prepared, World};
 use crate::real::{Real as _, V3};
-use crate::shader::bounds::{GROWTH, LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, upper_bound};
+use crate::shader::bounds::{FLOOR, GROWTH, LARGEST, MOST_SHININESS, SIDES_ROUNDINGS, upper_bound};
 use crate::shader::format::{Format, Known, Single};
 use crate::shader::records::wide::{
     Light, LitObject, Material, Projector, WorldPlane, WorldSphere,
@@ -243,8 +243,8 @@ fn low_light<F: Format>(plane: &prepare::WorldPlane<F::Number>) -> Option<(u32, 
     known.then_some((1 << light, height.nearest()))
 }
 
-/// Beyond every position that a ray is followed to: stands for no border, or no end.
-pub(super) const BEYOND: f64 = (1_u64 << 60) as f64;
+/// Beyond every position that is looked at, also where f64 knows it: stands for no border, or no end.
+pub(super) const BEYOND: f64 = (1_u128 << 96) as f64;
 
 /// Whether what is known of numbers of this size is so much that their rounding to the format is more than all the rest:
 /// bounds count a rounding, and have little room beside.
@@ -334,7 +334,7 @@ fn world_plane<F: Format>(
 ) -> WorldPlane {
     let mut axis_mask = [1.0; 3];
     let mut fixed_coordinate = [0.0; 3];
-    let mut highest = world.highest.nearest();
+    let mut highest = world.highest.nearest().clamp(-BEYOND, BEYOND);
     if let Some((axis, at)) = plane.fixed_coordinate {
         axis_mask[axis] = 0.0;
         fixed_coordinate[axis] = at.nearest();
@@ -352,11 +352,11 @@ fn world_plane<F: Format>(
         off,
     } = bounds::<F>(&plane.extent, third_sides);
     let offset = plane.offset.nearest().abs();
-    let most = if known_direction::<F>(plane.normal) && known::<F>(&[plane.offset], offset) {
-        most
-    } else {
-        f64::INFINITY
-    };
+    // An offset of 0 is a quotient whose bound is not 0.
+    let is_known = known_direction::<F>(plane.normal)
+        && known::<F>(&[plane.offset], offset.max(FLOOR))
+        && !highest.is_nan();
+    let most = if is_known { most } else { f64::INFINITY };
     let (low_light, height) = low_light::<F>(plane).unwrap_or((0, 0.0));
     WorldPlane {
         normal: nearest(plane.normal),

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bounds::{BRIGHT_GROWTH, DARKNESS, Screen, round_up};
+use super::bounds::{BRIGHT_GROWTH, DARKNESS, MOST_DARK, Screen, round_up};
 use super::format::{Double, Format, Known, Single};
 use super::kind::SurfaceKind;
 use super::records::PackedCamera;
@@ -282,8 +282,8 @@ impl<F: Format> Packed<F> {
             .iter()
             .map(|kind| kind.brightest(ambient))
             .fold(1e-30, f64::max);
-        (DARKNESS / (most * BRIGHT_GROWTH * F::wide(&self.camera.numbers).gain))
-            .min(f64::from(f32::MAX)) as f32
+        (DARKNESS / (most * BRIGHT_GROWTH * F::wide(&self.camera.numbers).gain)).min(MOST_DARK)
+            as f32
     }
 
     /// 255 times what a ray may bring to its pixel, for a unit of 1/|P|: what `dark` is the other side of.

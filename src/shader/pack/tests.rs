@@ -85,3 +85,48 @@ fn what_is_too_bright_together_is_left_to_the_cpu() {
     assert!(doubt(half * more, half * more, 0.0).is_some());
     assert!(doubt(1.0, half * more, half * more).is_some());
 }
+
+/// What is prepared of planes is no reason not to take a scene: one through the viewpoint, whose offset is 0.
+#[test]
+fn planes_through_the_viewpoint_are_taken() {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hard/lit_mirrors_path_exactly_20.txt");
+    let scene = crate::scene::load(&path).unwrap();
+    let settings = Settings::default();
+    assert_eq!(Packed::new(&scene, &settings).unprovable, None);
+    assert_eq!(Packed::in_f64(&scene, &settings).unprovable, None);
+}
+
+/// A z up to which hits count that no number of f64 holds in the scene's unit: planes end there, or it is not taken.
+#[test]
+fn a_tolerance_beyond_all_numbers_is_a_limit() {
+    let text = "camera c { pixeldim 3 3 worlddim 8 6 viewpoint 4 3 0.3 }
+        material m { ambient 1 1 1 diffuse 1 1 1 }
+        plane p { material m normal 0 1 0 point 0 0 0 }
+        light l { location 4 5 3 emissivity 4 4 4 }";
+    let scene = load_from("test", text.as_bytes(), Path::new(".")).unwrap();
+    let settings = Settings {
+        screen_tolerance: -1e308,
+        ..Settings::default()
+    };
+    let single = Packed::new(&scene, &settings);
+    let highest = single.lit.as_ref().unwrap().planes[0].highest;
+    assert!(
+        single.unprovable.is_some() || highest < -1e28,
+        "{highest:e}"
+    );
+    let double = Packed::in_f64(&scene, &settings);
+    let highest = double.lit.as_ref().unwrap().planes[0].highest;
+    assert!(
+        double.unprovable.is_some() || highest < -1e28,
+        "{highest:e}"
+    );
+    // It is no number that cannot be told from others in a shader's text.
+    let far = Settings {
+        screen_tolerance: -1e300,
+        ..Settings::default()
+    };
+    let double = Packed::in_f64(&scene, &far);
+    assert!(double.lit.as_ref().unwrap().planes[0].highest < -1e28);
+    assert_eq!(double.unprovable, None);
+}

@@ -177,11 +177,17 @@ fn the_faintest_ray_may_decide_a_byte() {
 
 /// The same on the CPU and on the GPU, up to this z.
 fn certified_on_both(text: &str, screen_tolerance: f64) {
+    certified_on_both_to(text, screen_tolerance, 20.0);
+}
+
+/// The same with a longest path.
+fn certified_on_both_to(text: &str, screen_tolerance: f64, max_path: f64) {
     for backend in [Backend::Cpu, Backend::Gpu] {
-        let settings = Settings {
+        let mut settings = Settings {
             screen_tolerance,
             ..common::on(backend)
         };
+        settings.limits.max_path = max_path;
         certified(text, &settings);
     }
 }
@@ -255,4 +261,55 @@ fn quadrics_next_to_the_viewpoint_are_seen() {
          quadric q {{ material b coefficients 0 0 0 0 0 0 0 0 1 3.9999999999991 }}"
     );
     certified_on_both(&beside, 10.0);
+}
+
+/// Adjoints of quadrics whose numbers f32 takes for 0, far away: whether they are hit hangs on them.
+#[test]
+fn flushed_adjoints_are_counted() {
+    let hit = "camera c { pixeldim 20 15 worlddim 8 6 viewpoint -17179869184.0 0 1 }
+         material a { ambient 1e10 5e9 1e9 }
+         quadric q { material a coefficients 1 -4.1359030627651384e-25 8.077935669463161e-28 0 0 0 0
+             -1.3877787807814457e-17 0 5.820766091346741e-11 }";
+    let missed = "camera c { pixeldim 20 15 worlddim 8 6 viewpoint -17179869184.0 0 1 }
+         material a { ambient 1e10 5e9 1e9 }
+         quadric q { material a coefficients 1 4.1359030627651384e-25 8.077935669463161e-28 0 0 0 0
+             1.3877787807814457e-17 0 -5.820766091346741e-11 }";
+    for text in [hit, missed] {
+        certified_on_both(text, 1e12);
+    }
+}
+
+/// f64 knows hits that are farther away than any that f32 knows: what stands for no border is farther still.
+#[test]
+fn far_hits_are_within_no_border() {
+    let cone = "camera c { pixeldim 20 15 worlddim 2.842170943040401e-14 2.842170943040401e-14 viewpoint 0 0
+             1.9073486328125e-06 }
+         material m { ambient 0 0 0 specular 30 30 30 }
+         material a { ambient 4e9 2e9 1e9 }
+         plane wall { material m normal 1 0 0.41421363220428187 point 0 0 -1048576.0 }
+         quadric q { material a coefficients 1 1 -1 0 0 0 0 0 1.1444091796875e-05
+             3.2741809263825417e-11 }
+         light l { location 1 1 1 emissivity 0 0 0 }";
+    let sliver = "camera c { pixeldim 20 15 worlddim 1.862645149230957e-09 5.684341886080802e-14 viewpoint -8.0
+             -1.9073486328125e-06 1.9073486328125e-06 }
+         material m { ambient 0 0 0 specular 30 30 30 }
+         material a { ambient 4e9 2e9 1e9 }
+         plane wall { material m normal 0 0 1 point -8.0 -1.9073486328125e-06 -1048575.9999980927 }
+         triangle t { material a vertex1 -8.0 1048576.1249980927 -1572863.9999980927 vertex2 -8.0
+             1048576.1249980927 524288.0000019073 vertex3 17592186044408.0 1048576.1249980927
+             -1048575.9999980927 }
+         light l { location 1 1 1 emissivity 0 0 0 }";
+    for text in [cone, sliver] {
+        certified_on_both_to(text, 0.0, 1e30);
+    }
+}
+
+/// What may be anywhere on a ray is not too far away to be seen, however oblique the ray is.
+#[test]
+fn what_may_be_near_is_not_dark() {
+    let text = "camera c { pixeldim 20 15 worlddim 4398046511104.0 4398046511104.0 viewpoint
+             -1.1279676740211232e+24 0 1099511627776.0 }
+         material a { ambient 9.747722856775856e-13 9.747722856775856e-13 9.747722856775856e-13 }
+         quadric q { material a coefficients 0 0 0 0 0 0 0 1 0 1.3234889800848443e-23 }";
+    certified_on_both(text, 1e15);
 }

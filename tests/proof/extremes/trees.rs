@@ -1,9 +1,11 @@
 //! How many rays are followed: a scene that takes long is a fault too.
 
 use plumb::cpu::light::Lit;
+use plumb::cpu::pixel::ExactTracer;
 use plumb::cpu::surface::Point;
-use plumb::cpu::trace::{Branch, Fault, Limits, TraceObserver, Unmet, Unobserved, ray_trace};
-use plumb::prepare::Prepared;
+use plumb::cpu::trace::{Branch, Fault, Limits, TraceObserver, Unmet, ray_trace};
+use plumb::jitter::Sampling;
+use plumb::prepare::ViewParameters;
 use plumb::real::{Bounded, V3};
 use plumb::render::{Backend, Settings};
 
@@ -56,9 +58,9 @@ fn half_mirrors(count: u32, apart: f64) -> String {
 
 fn followed(text: &str, limits: &Limits) -> (Followed, Result<(), Fault>) {
     let scene = scene(text);
-    let prepared = Prepared::<Bounded>::new(&scene, 0.0);
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let mut followed = Followed::default();
-    let traced = ray_trace(&prepared, limits, 2.0, 2.0, &mut followed);
+    let traced = ray_trace(exact_tracer.bounded(), limits, 2.0, 2.0, &mut followed);
     (followed, traced.map(|_| ()))
 }
 
@@ -128,9 +130,15 @@ fn long_paths_in_narrow_gaps_end() {
         ..Limits::default()
     };
     let scene = scene(text);
-    let prepared = Prepared::<Bounded>::new(&scene, 0.0);
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let mut followed = Followed::default();
-    let traced = ray_trace(&prepared, &limits, 3.0, 2.5 + 1e-3, &mut followed);
+    let traced = ray_trace(
+        exact_tracer.bounded(),
+        &limits,
+        3.0,
+        2.5 + 1e-3,
+        &mut followed,
+    );
     assert!(traced.is_ok());
     assert!((20..400).contains(&followed.rays), "{}", followed.rays);
 }
@@ -147,12 +155,11 @@ const TOO_MANY_RAYS: &str = "camera c { pixeldim 160 48 worlddim 8 6 viewpoint 4
 #[test]
 fn the_first_pixel_with_too_many_rays_is_named() {
     let scene = scene(TOO_MANY_RAYS);
-    let prepared = Prepared::<Bounded>::new(&scene, 0.0);
+    let exact_tracer = ExactTracer::new(&scene, ViewParameters::from(0.0));
     let [width, height] = scene.camera.pixeldim;
     let too_many = |x: u32, y: u32| {
-        let (x, y) = (f64::from(x), f64::from(y));
-        let traced = ray_trace(&prepared, &Limits::default(), x, y, &mut Unobserved);
-        traced.err() == Some(Fault::TooManyRays)
+        let decided = exact_tracer.trace(&Limits::default(), Sampling::Once, x, y);
+        decided.is_err()
     };
     let (x, y) = (0..height)
         .rev()

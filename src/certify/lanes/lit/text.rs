@@ -49,6 +49,7 @@ pub(super) mod constants {
     pub(in crate::certify::lanes) const LEAST_SLOPE: f32 = 9.094947e-13;
     pub(in crate::certify::lanes) const NEAREST: f32 = 9.094947e-13;
     pub(in crate::certify::lanes) const CLOSEST: f32 = 1.2676506e30;
+    pub(in crate::certify::lanes) const QUADRIC_FLUSHED: f32 = 1.880791e-37;
     pub(in crate::certify::lanes) const NORMAL_ROUNDINGS: f32 = 7.5;
     pub(in crate::certify::lanes) const UNIT_ROUNDINGS: f32 = 5.0;
     pub(in crate::certify::lanes) const AIM_ROUNDINGS: f32 = 6.0;
@@ -1775,7 +1776,9 @@ pub(super) fn quadric_meets<'a, S: Simd>(
                 + slope_error * (2.0 * slope.abs() + slope_error)
                 + k.abs() * a_error
                 + u * (all_turned + slope * slope + k.abs() * all_a)
-                + constants::TINY_SQUARE;
+                + constants::TINY_SQUARE
+                + constants::QUADRIC_FLUSHED
+                    * ((length_m + moment_error + length_e) * (length_m + moment_error));
             let least = disc.max(disc_error);
             let inverse_root = least.inverse_sqrt();
             let root = least * inverse_root;
@@ -2743,15 +2746,11 @@ pub(super) fn quadric_hits<'a, S: Simd>(
         start_error: scene.f32(0.0),
     };
     let met = quadric_meets(scene, on, quadric, seen, scene.f32(-1.0), scene.f32(0.0));
-    intersection.hit = met.hit
-        & met.t.gt(constants::FIRST_ORDER * met.error)
-        & met.t.gt(scene.f32(constants::NEAREST));
+    let limit = constants::NEAREST * length;
+    intersection.hit = met.hit & met.t.gt(constants::FIRST_ORDER * met.error) & met.t.gt(limit);
     intersection.possible = met.possible;
-    let nearest = intersection
-        .hit
-        .select(met.t, met.low)
-        .max(scene.f32(constants::NEAREST));
-    let is_closest = !intersection.hit & met.low.lt(scene.f32(constants::NEAREST));
+    let nearest = intersection.hit.select(met.t, met.low).max(limit);
+    let is_closest = !intersection.hit & met.low.lt(limit);
     intersection.inverse = is_closest.select(scene.f32(constants::CLOSEST), length / nearest);
     intersection.error = intersection.inverse
         * (intersection.hit.select(
@@ -3289,7 +3288,7 @@ pub(super) fn hit_decides<'a, S: Simd>(
     let mut gone = scene.mask(false);
     let nothing = (hit.inverse + hit.error).le(scene.f32(0.0)) & hit.rival.le(scene.f32(0.0));
     let sure = (hit.inverse - hit.rival).gt(hit.error)
-        & hit.inverse.gt(scene.f32(constants::LEAST_INVERSE))
+        & (hit.inverse * ray.inverse_length).gt(scene.f32(constants::LEAST_INVERSE))
         & hit.inverse.gt(constants::FIRST_ORDER * hit.error);
     let here = on & (nothing | !sure);
     if here.any() {
