@@ -1,5 +1,5 @@
-// The trees over many spheres and over many triangles: which of them a ray may hit. Twin of the boxes' tests on the CPU:
-// src/certify/lanes/lit/walk.rs. Referee: src/cpu/bvh.rs.
+// The trees over many spheres and over many triangles: which of them a ray may hit. Twin of the boxes' tests on the
+// CPU: src/certify/lanes/lit/walk.rs. Referee: src/cpu/bvh.rs.
 
 //#insert struct BvhNode
 

@@ -1,8 +1,8 @@
 // From a pixel to its ray, from a colour to its bytes. Referee: src/cpu/camera.rs.
 //
-// `src/lower` writes the same in Rust, for the CPU's f32. In all files a line that ends in //~ is there only where pixels
-// are certified: it carries an error bound or asks one.
-// Bounds are derived in docs/NUMERICS.md; U and the constants named after what they bound come from the host.
+// `src/lower` writes the same in Rust, for the CPU's f32. In all files a line that ends in //~ is there only where
+// pixels are certified: it carries an error bound or asks one. Bounds are derived in docs/NUMERICS.md; U and the
+// constants named after what they bound come from the host.
 
 //#if double
 // A driver's own function may be as far off as that of f32.

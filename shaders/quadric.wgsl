@@ -146,7 +146,8 @@ fn quadric_meets(quadric: Quadric, ray: QuadricRay, light: f32) -> QuadricHit {
     let length_m = sum3(moment);
     let d_error = ray.dir_error;
     // Sums of the terms, none of them negative.
-    let all_turned = dot(abs(moment), symmetric(abs(quadric.adjoint_diagonal), abs(quadric.adjoint_beside), abs(moment)));
+    let all_turned = dot(abs(moment),
+        symmetric(abs(quadric.adjoint_diagonal), abs(quadric.adjoint_beside), abs(moment)));
     let along_d = symmetric(abs(quadric.diagonal), abs(quadric.beside), abs(ray.dir));
     let all_a = dot(abs(ray.dir), along_d);
     let all_h = dot(abs(p), along_d) + length_v;
@@ -195,8 +196,10 @@ fn quadric_meets(quadric: Quadric, ray: QuadricRay, light: f32) -> QuadricHit {
     let place_errors = vec2f(one_error, two_error) + passage.off
         + DISTANCE_ROUNDINGS * U * (abs(along) + vec2f(abs(one), abs(two)));
     let swap = a_known & (one > two);
-    let near = quadric_root(quadric, ray, select(places.x, places.y, swap), select(place_errors.x, place_errors.y, swap));
-    var far = quadric_root(quadric, ray, select(places.y, places.x, swap), select(place_errors.y, place_errors.x, swap));
+    let near = quadric_root(quadric, ray, select(places.x, places.y, swap),
+        select(place_errors.x, place_errors.y, swap));
+    var far = quadric_root(quadric, ray, select(places.y, places.x, swap),
+        select(place_errors.y, place_errors.x, swap));
     var first = near;
     // A light on the surface is one of the roots.
     if light > ray.start {

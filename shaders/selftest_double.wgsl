@@ -1,4 +1,5 @@
-// What the certified path takes for granted of f64 on a device, tried out: src/gpu/selftest/double.rs judges the results.
+// What the certified path takes for granted of f64 on a device, tried out: src/gpu/selftest/double.rs judges the
+// results.
 
 // x and y, each as two words, the lower half first.
 @group(0) @binding(0) var<storage, read> operands: array<vec4u>;

@@ -106,8 +106,8 @@ fn nearer_secondary(closest: ptr<function, SecondaryHit>, intersection: Intersec
     (*closest).object = select((*closest).object, object, takes);
 }
 
-// The first object that the ray meets in range. The rounds of its loops count `weight` times: APART where all lanes of a
-// vector ask together, LANES where they ask on their own. Certified, whether it is the first for sure is left to
+// The first object that the ray meets in range. The rounds of its loops count `weight` times: APART where all lanes of
+// a vector ask together, LANES where they ask on their own. Certified, whether it is the first for sure is left to
 // `surely_closest`.
 fn closest_hit(ray: SecondaryRay, range: Range, weight: u32) -> SecondaryHit {
     var closest: SecondaryHit;

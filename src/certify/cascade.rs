@@ -1,9 +1,9 @@
 //! What decides pixels that f32 leaves open: each decider takes what those before it left, and leaves less.
 //!
-//! `f64 for many pixels at once (lanes/doubles) -> f64, pairs of f64 and exact numbers for one (cpu/pixel)`; of pixels of
-//! several samples the first traces samples, and the second takes what these bring. f32 is the GPU's or the lanes'; what
-//! a GPU decides in f64 never comes here. [`pixels`](super::pixels) hands pixels in, from bands
-//! that devices rendered and from those that the CPU makes alone.
+//! `f64 for many pixels at once (lanes/doubles) -> f64, pairs of f64 and exact numbers for one (cpu/pixel)`; of pixels
+//! of several samples the first traces samples, and the second takes what these bring. f32 is the GPU's or the lanes';
+//! what a GPU decides in f64 never comes here. [`pixels`](super::pixels) hands pixels in, from bands that devices
+//! rendered and from those that the CPU makes alone.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -149,8 +149,8 @@ impl<'a> Cascade<'a> {
         Ok(())
     }
 
-    /// A pixel by itself, in all numbers that it takes, but for what some samples are known to bring; and how many samples
-    /// were traced.
+    /// A pixel by itself, in all numbers that it takes, but for what some samples are known to bring; and how many
+    /// samples were traced.
     fn alone(
         &self,
         open: &Open<'_>,

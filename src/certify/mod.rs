@@ -2,9 +2,9 @@
 //! of.
 //!
 //! Stands between the tracers (`gpu`, `cpu`) and `render`, which runs it band by band. [`lanes`] does on the CPU what
-//! the GPU does, [`pixels`] decides single pixels and whole bands on all cores, [`cascade`] says who decides after whom,
-//! [`spot`] which sure pixels of a band are computed again, [`trust`] which devices passed the self-test, [`Tally`]
-//! counts what decided how many, [`verdict`] has a colour for each.
+//! the GPU does, [`pixels`] decides single pixels and whole bands on all cores, [`cascade`] says who decides after
+//! whom, [`spot`] which sure pixels of a band are computed again, [`trust`] which devices passed the self-test,
+//! [`Tally`] counts what decided how many, [`verdict`] has a colour for each.
 
 pub mod cascade;
 mod first_halt;

@@ -72,8 +72,8 @@ impl<'a> PixelDecider<'a> {
     }
 
     /// Decides the pixels at these places of a band (counted from its top left, in rising order) whose top row is
-    /// `top`. Of those of which something is known only the samples that are missing are traced, if that is enough. Gives
-    /// up where `unwanted` says that nobody wants them any more.
+    /// `top`. Of those of which something is known only the samples that are missing are traced, if that is enough.
+    /// Gives up where `unwanted` says that nobody wants them any more.
     pub fn pixels(
         &self,
         top: u32,
@@ -224,8 +224,8 @@ impl<'a> PixelDecider<'a> {
         Ok((band, tally))
     }
 
-    /// Decides up to `LANES` pixels of row `y` from column `x` on, as a band does, and forgets them: to see how long that
-    /// takes.
+    /// Decides up to `LANES` pixels of row `y` from column `x` on, as a band does, and forgets them: to see how long
+    /// that takes.
     pub fn try_pixels(&self, [x, y]: [u32; 2], lanes: Option<&Lanes>) -> Result<Tally, Halt> {
         let mut bytes = [0; 3 * LANES];
         let strip = Strip {

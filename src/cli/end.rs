@@ -1,8 +1,8 @@
 //! How the process ends: at once.
 //!
-//! Threads may still be loading a driver, or wait for one that does not answer. What the C library and the drivers do at
-//! a regular end (destructors of libraries in use) is not safe beside such threads, and takes time for nothing: all that
-//! a process has the system takes back.
+//! Threads may still be loading a driver, or wait for one that does not answer. What the C library and the drivers do
+//! at a regular end (destructors of libraries in use) is not safe beside such threads, and takes time for nothing: all
+//! that a process has the system takes back.
 
 use std::io::Write as _;
 

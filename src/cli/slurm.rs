@@ -1,5 +1,5 @@
-//! `plumb slurm`: the job script by which a cluster makes a picture in parts, or many pictures. plumb does not schedule;
-//! Slurm does.
+//! `plumb slurm`: the job script by which a cluster makes a picture in parts, or many pictures. plumb does not
+//! schedule; Slurm does.
 
 mod quote;
 mod script;

@@ -210,8 +210,8 @@ impl<'a> ExactTracer<'a> {
     }
 
     /// What the samples that are `wanted` bring to the mean of pixel (x, y), each by the numbers that it needs, and the
-    /// hardest that they took. Of the first of them `brought` may tell. Of presumed samples nothing is certain, and their
-    /// errors count as 0.
+    /// hardest that they took. Of the first of them `brought` may tell. Of presumed samples nothing is certain, and
+    /// their errors count as 0.
     fn mean_bounded(
         &self,
         limits: &Limits,

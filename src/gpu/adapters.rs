@@ -187,9 +187,9 @@ pub fn open_for_window(wanted: Option<&str>) -> Result<Opened, GpuError> {
 ///
 /// On a GPU that is the same device: it changes from one work to the next in a moment, and pictures need not be moved.
 /// A driver that computes on the CPU works off what it is given in the order in which it came, and keeps whoever hands
-/// something in waiting meanwhile. There the window has a device of its own, on an instance of its own, since a driver's
-/// threads belong to its instance: neither queue nor threads are shared, and the system's scheduler decides who goes
-/// first.
+/// something in waiting meanwhile. There the window has a device of its own, on an instance of its own, since a
+/// driver's threads belong to its instance: neither queue nor threads are shared, and the system's scheduler decides
+/// who goes first.
 ///
 /// # Errors
 /// As [`open`].

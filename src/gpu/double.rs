@@ -1,5 +1,5 @@
-//! The stage behind f32 on a GPU that has f64: the shader that takes pixels from a list. It is made while the first bands
-//! are rendered without it.
+//! The stage behind f32 on a GPU that has f64: the shader that takes pixels from a list. It is made while the first
+//! bands are rendered without it.
 
 use std::sync::OnceLock;
 
@@ -27,8 +27,8 @@ const TRIED: u32 = 1 << 14;
 /// As many pixels are taken at least: of several samples most miss a few.
 const TRIED_PIXELS: u32 = 64;
 
-/// Whether a scene can have this stage: not where its bounds cannot be relied on, where pairs of f64 tell that an object
-/// is never seen and f64 does not, or where objects are so many that pairs have them on demand.
+/// Whether a scene can have this stage: not where its bounds cannot be relied on, where pairs of f64 tell that an
+/// object is never seen and f64 does not, or where objects are so many that pairs have them on demand.
 pub fn can_be(single: &Packed, double: &Packed<F64>) -> bool {
     double.unprovable.is_none()
         && single.kinds == double.kinds
@@ -97,8 +97,8 @@ mod tests {
     use crate::scene::parse;
     use crate::settings::Settings;
 
-    /// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32: what is
-    /// packed of them has no stage in f64. `Packed::in_f64` prepares them all.
+    /// Objects that pairs of f64 prepare on demand are in no buffer, and the lists that name them are those of f32:
+    /// what is packed of them has no stage in f64. `Packed::in_f64` prepares them all.
     #[test]
     fn many_objects_have_no_stage() {
         let mut text = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }

@@ -1,9 +1,9 @@
 //! The GPU: the only code that knows wgpu.
 //!
-//! [`adapters`] finds an adapter, [`candidates`] those that may make a picture together, [`device`] opens it, [`pipeline`] compiles the shader that [`shader`](crate::shader)
-//! composed and binds the scene to it, [`bands`] runs the frame in rectangles bounded in memory and time; [`selftest`]
-//! tries out a device before it is trusted. [`canvas`] holds a picture that a window shows, [`single`] asks for one
-//! pixel.
+//! [`adapters`] finds an adapter, [`candidates`] those that may make a picture together, [`device`] opens it,
+//! [`pipeline`] compiles the shader that [`shader`](crate::shader) composed and binds the scene to it, [`bands`] runs
+//! the frame in rectangles bounded in memory and time; [`selftest`] tries out a device before it is trusted. [`canvas`]
+//! holds a picture that a window shows, [`single`] asks for one pixel.
 
 pub mod adapters;
 pub mod bands;

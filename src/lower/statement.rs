@@ -1,7 +1,7 @@
 //! Statements as Rust: where lanes go different ways, both ways are gone, each by the lanes that want it.
 //!
-//! `on` has the lanes that are here. What is stored is stored by them; where a lane leaves the function or a loop early,
-//! it is noted in `gone`, and is on no more.
+//! `on` has the lanes that are here. What is stored is stored by them; where a lane leaves the function or a loop
+//! early, it is noted in `gone`, and is on no more.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

@@ -37,8 +37,8 @@ struct Visits {
     in_loop: bool,
     /// The regions in loops.
     in_loops: BTreeSet<usize>,
-    /// The variables seen so far; and those that were stored into as a whole first, with the region where every lane that
-    /// comes into it does so.
+    /// The variables seen so far; and those that were stored into as a whole first, with the region where every lane
+    /// that comes into it does so.
     seen: BTreeSet<Handle<LocalVariable>>,
     fresh: BTreeMap<Handle<LocalVariable>, usize>,
 }

@@ -133,8 +133,8 @@ impl Folder {
         remove_left(&self.path, &is_ours)
     }
 
-    /// Removes the files of all parts of a cut, with what killed processes have left, and the folder, if nothing else is
-    /// there. Nobody may be making some.
+    /// Removes the files of all parts of a cut, with what killed processes have left, and the folder, if nothing else
+    /// is there. Nobody may be making some.
     ///
     /// # Errors
     /// What the system says of a part that it does not let us remove.

@@ -178,8 +178,8 @@ pub(super) const HELP: &[(&str, &str)] = &[
     ("Ctrl+Q", "close"),
 ];
 
-/// The commands of the keys that were pressed, unless a field of text has them. Those that concern the window as a whole
-/// it has not: see [`leaves_field`].
+/// The commands of the keys that were pressed, unless a field of text has them. Those that concern the window as a
+/// whole it has not: see [`leaves_field`].
 pub(super) fn pressed(context: &Context) -> Vec<Command> {
     if context.egui_wants_keyboard_input() {
         return Vec::new();

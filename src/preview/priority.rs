@@ -1,8 +1,8 @@
 //! The priority of threads: whatever computes for long gives way to the thread that the window lives on, and to those
 //! of the driver that draws it.
 //!
-//! A window that waits for a processor is as dead as one that waits for a lock, and a picture that is rendered keeps all
-//! processors busy.
+//! A window that waits for a processor is as dead as one that waits for a lock, and a picture that is rendered keeps
+//! all processors busy.
 
 /// How much lower than usual, in the steps of `nice`. A thread gets about a tenth of a processor that somebody at the
 /// usual priority wants, and all of it where nobody does.

@@ -2,7 +2,8 @@
 //!
 //! A callback of egui's: the worker's [`Canvas`] goes in as it is, and what decided each pixel or which object it shows
 //! is painted over it. That is drawn into a texture once, and each frame of the window copies the texture: frames are
-//! many, one for each motion of the mouse, and a driver that computes on the CPU would spend most of each on the picture.
+//! many, one for each motion of the mouse, and a driver that computes on the CPU would spend most of each on the
+//! picture.
 
 use std::sync::Arc;
 

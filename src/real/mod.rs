@@ -2,8 +2,8 @@
 //!
 //! `cpu` is written once, over [`Real`]. A number type says what it knows: a comparison that it cannot decide is
 //! [`Undecided`], never a guess. [`Bounded`] is f64 that knows its error, and decides nearly every pixel; [`Pair`] has
-//! twice the digits; [`Lazy`] decides the others, in the end exactly. Plain f64 decides always, and is wrong where its rounding crosses the
-//! border: it is for people to read, and for what nothing else decides.
+//! twice the digits; [`Lazy`] decides the others, in the end exactly. Plain f64 decides always, and is wrong where its
+//! rounding crosses the border: it is for people to read, and for what nothing else decides.
 //!
 //! [`rational`] stands below them all: the arithmetic that `prepare` takes a scene's facts from.
 

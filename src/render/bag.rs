@@ -142,7 +142,8 @@ impl Bag {
         self.change(|state| state.expected = expected);
     }
 
-    /// The CPU, which would make so many pixels a second, leaves all cores to the worker that is expected, for this time.
+    /// The CPU, which would make so many pixels a second, leaves all cores to the worker that is expected, for this
+    /// time.
     pub(super) fn rest(&self, time: Duration, speed: f64) {
         self.change(|state| state.rest = Some((Instant::now() + time, speed)));
     }

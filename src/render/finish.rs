@@ -1,5 +1,5 @@
-//! What becomes of a band that a device rendered, while it renders the next ones: its doubtful pixels are decided on the
-//! CPU, and some of its sure ones are computed again.
+//! What becomes of a band that a device rendered, while it renders the next ones: its doubtful pixels are decided on
+//! the CPU, and some of its sure ones are computed again.
 
 use std::time::Instant;
 
@@ -142,8 +142,8 @@ impl<'a, 's> Finish<'a, 's> {
         Ok((band, tally, alone))
     }
 
-    /// Computes some pixels that the GPU has a part in again, and returns how many; those that the CPU decided alone are
-    /// not worth a check.
+    /// Computes some pixels that the GPU has a part in again, and returns how many; those that the CPU decided alone
+    /// are not worth a check.
     fn check(
         &self,
         band: &mut Band,

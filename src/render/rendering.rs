@@ -103,8 +103,8 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// How many pixels a second the CPU makes, by a few from all over the picture that all threads try at once: what two
-    /// of them do is not twice what one does where they share a core. Infinite where a pixel cannot be made.
+    /// How many pixels a second the CPU makes, by a few from all over the picture that all threads try at once: what
+    /// two of them do is not twice what one does where they share a core. Infinite where a pixel cannot be made.
     pub(super) fn tried_speed(&self) -> f64 {
         let lanes = self.lanes();
         let speeds = self.on_threads(|| {
@@ -179,8 +179,8 @@ impl<'a> Rendering<'a> {
         self.lanes.get_or_init(|| self.on_threads(new)).as_ref()
     }
 
-    /// Whether the CPU makes the scene as many pixels at once as its vectors hold. Software uses the same cores, and was
-    /// never seen to be quicker then (docs/BENCH.md).
+    /// Whether the CPU makes the scene as many pixels at once as its vectors hold. Software uses the same cores, and
+    /// was never seen to be quicker then (docs/BENCH.md).
     pub(super) fn is_quick_on_cpu(&self) -> bool {
         self.lanes().is_some()
     }

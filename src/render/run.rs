@@ -92,7 +92,8 @@ impl Rendering<'_> {
         let (sender, news) = channel();
         let wants_devices = self.wants_devices()?;
         let certified = self.settings.precision == Precision::Certified;
-        // Where a device was named, where it alone may make the bytes, or where the CPU is not wanted, it is waited for.
+        // Where a device was named, where it alone may make the bytes, or where the CPU is not wanted, it is waited
+        // for.
         let waits = self.settings.backend == Backend::Gpu
             || is_named(self.settings.adapter.as_deref())
             || !certified;

@@ -1,6 +1,6 @@
 //! The numbers of a [`Scene`] by the rows of the `table`: which there are, what they are and what they must keep, and
-//! the way to read one and to put another in its place. What the window's panels, their limits and [`edit`](crate::edit)
-//! go by, so that an attribute of the language can be changed as soon as it has its row.
+//! the way to read one and to put another in its place. What the window's panels, their limits and
+//! [`edit`](crate::edit) go by, so that an attribute of the language can be changed as soon as it has its row.
 
 use super::check::{broken_relation, number_fault};
 use super::draft::Draft;

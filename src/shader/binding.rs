@@ -94,8 +94,8 @@ fn of_lit<F: Format, T: Record>(packed: &Packed<F>, of: fn(&Lit<F>) -> &Vec<T>) 
     records(packed.lit.as_ref().map_or(&[][..], |lit| of(lit)))
 }
 
-/// What `objects` holds in a scene without lights; nothing in others. The tables of indices stand behind the objects, in
-/// the field `kind`.
+/// What `objects` holds in a scene without lights; nothing in others. The tables of indices stand behind the objects,
+/// in the field `kind`.
 pub(crate) fn objects<F: Format>(packed: &Packed<F>) -> Vec<F::Record<Object>> {
     if packed.lit.is_some() {
         return Vec::new();

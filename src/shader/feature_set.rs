@@ -49,7 +49,8 @@ pub struct FeatureSet {
     pub kinds: BTreeSet<SurfaceKind>,
     /// The unquantised values are wanted too.
     pub values: bool,
-    /// Pixels are stored as a picture's file has them, unless their values are wanted (see [`Form`](super::form::Form)).
+    /// Pixels are stored as a picture's file has them, unless their values are wanted (see
+    /// [`Form`](super::form::Form)).
     pub packed: bool,
     /// Rays a pixel.
     pub samples: u32,
@@ -233,8 +234,8 @@ impl FeatureSet {
         }
     }
 
-    /// Whether pixels in doubt are listed: not where four pixels go into a vector of words, nor where offsets of samples
-    /// are handed over, which are f32.
+    /// Whether pixels in doubt are listed: not where four pixels go into a vector of words, nor where offsets of
+    /// samples are handed over, which are f32.
     pub fn is_listed(&self) -> bool {
         self.listed
             && self.certified

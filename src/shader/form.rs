@@ -10,8 +10,8 @@
 //!   and in the highest not 0 where the CPU has to decide. A group is as many pixels as an invocation makes.
 //! - **Values**: red, green, blue as f32 (255 is a full byte), then such a word.
 //!
-//! Records of pixels in doubt come last: of those of which some samples are sure (`gpu/bands/partial.rs`), or, for f64, of
-//! all (`gpu/bands/listed.rs`).
+//! Records of pixels in doubt come last: of those of which some samples are sure (`gpu/bands/partial.rs`), or, for f64,
+//! of all (`gpu/bands/listed.rs`).
 
 use super::feature::{Feature, Features};
 use super::feature_set::{FeatureSet, QUAD};

@@ -1,7 +1,7 @@
 //! The floating-point formats that shaders are made for: f32, and f64 where a device has it.
 //!
-//! One text and one list of records serve both. What differs is here: the unit roundoff that bounds are counted in, what
-//! the scene is prepared in, and what a record becomes in the end.
+//! One text and one list of records serve both. What differs is here: the unit roundoff that bounds are counted in,
+//! what the scene is prepared in, and what a record becomes in the end.
 
 use std::fmt::Debug;
 

@@ -1,4 +1,5 @@
-//! What docs/CLUSTER.md shows without a cluster, run as it stands there but for the picture's size and the number of parts.
+//! What docs/CLUSTER.md shows without a cluster, run as it stands there but for the picture's size and the number of
+//! parts.
 
 use std::fs;
 use std::path::Path;

@@ -94,8 +94,8 @@ pub(crate) fn row_by_lanes(lanes: &Lanes, jitter: &Jitter, y: u32, words: &mut [
     }
 }
 
-/// The words of pixels that lanes make in f64, whether f32 is sure of them or not: bytes where they are sure, of several
-/// samples of all of them.
+/// The words of pixels that lanes make in f64, whether f32 is sure of them or not: bytes where they are sure, of
+/// several samples of all of them.
 pub(crate) fn words_in_f64(
     lanes: &DoubleLanes,
     exact_tracer: &ExactTracer<'_>,

@@ -246,8 +246,8 @@ fn stored(scene: &Scene, settings: &Settings, for_a_file: bool) -> Vec<(Vec<u8>,
     stored
 }
 
-/// Packed for a file or in words for a canvas, with a pixel an invocation or four, records behind them or none, whatever
-/// the width: the same bytes, and the same of them in doubt.
+/// Packed for a file or in words for a canvas, with a pixel an invocation or four, records behind them or none,
+/// whatever the width: the same bytes, and the same of them in doubt.
 #[test]
 fn both_forms_of_pixels_hold_the_same() {
     let kinds = [

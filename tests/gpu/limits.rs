@@ -130,8 +130,8 @@ fn a_shadow_ray_that_takes_too_long_is_handed_to_the_cpu() {
     assert!(gpu[2] > 0, "{gpu:?}");
 }
 
-/// A driver counts the rounds of a vector's lanes together: where some of its pixels have light at one sample and some at
-/// another, that is more than any of them goes round. (lavapipe drops a lamp or a sample then.)
+/// A driver counts the rounds of a vector's lanes together: where some of its pixels have light at one sample and some
+/// at another, that is more than any of them goes round. (lavapipe drops a lamp or a sample then.)
 #[test]
 fn lanes_that_have_light_at_different_samples_are_not_cut() {
     let mut differ = 0;

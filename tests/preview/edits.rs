@@ -1,4 +1,5 @@
-//! What is changed in the window: selected by a click, dragged by a handle, undone, saved, never lost without a question.
+//! What is changed in the window: selected by a click, dragged by a handle, undone, saved, never lost without a
+//! question.
 
 use std::process::Command;
 use std::time::Duration;

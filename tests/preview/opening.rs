@@ -205,8 +205,8 @@ fn corner(shot: &RgbImage) -> u32 {
     shot.get_pixel(3, 3).0.map(u32::from).iter().sum()
 }
 
-/// Whether there is a button that has the keyboard: it has a bright line around it, and nothing else has one so long. (A
-/// file that is held over the window makes that darker, too, as a question does.)
+/// Whether there is a button that has the keyboard: it has a bright line around it, and nothing else has one so long.
+/// (A file that is held over the window makes that darker, too, as a question does.)
 fn has_the_keyboard(shot: &RgbImage) -> bool {
     let is_bright = |pixel: &image::Rgb<u8>| pixel.0.iter().all(|channel| *channel > 200);
     shot.rows().any(|row| {

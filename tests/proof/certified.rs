@@ -60,8 +60,8 @@ fn shrink(scene: &mut Scene, most: u32) {
     };
 }
 
-/// Complaints about a picture, and about what the GPU's f64 makes of it if that is asked for: pixels that differ, pixels
-/// that the oracle does not decide.
+/// Complaints about a picture, and about what the GPU's f64 makes of it if that is asked for: pixels that differ,
+/// pixels that the oracle does not decide.
 fn complaints(scene: &Scene, answer: &Answer, settings: &Settings, in_f64: bool) -> Vec<String> {
     let (rgb, report) = common::picture(scene, settings);
     oracle::rendered_as_asked(&report, settings.backend);

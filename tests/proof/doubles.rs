@@ -92,8 +92,8 @@ pub(crate) fn with_doubles(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Op
     Some(rgb)
 }
 
-/// The picture once more for each kind of vectors that hold four f64 or more, with the bytes of all pixels that the CPU's
-/// f64 is sure of, not only of those that f32 leaves in doubt.
+/// The picture once more for each kind of vectors that hold four f64 or more, with the bytes of all pixels that the
+/// CPU's f64 is sure of, not only of those that f32 leaves in doubt.
 pub(crate) fn with_lanes(scene: &Scene, settings: &Settings, rgb: &[u8]) -> Vec<(String, Vec<u8>)> {
     if !DoubleLanes::may_be(scene, settings) {
         return Vec::new();

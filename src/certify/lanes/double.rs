@@ -1,5 +1,6 @@
-//! What `f64` is where a vector of the processor holds numbers of 32 bits for so many lanes: [`D`], two vectors, of half
-//! of the lanes each. So all else is as it is for f32: masks, whole numbers, places in buffers ([`number`](super::number)).
+//! What `f64` is where a vector of the processor holds numbers of 32 bits for so many lanes: [`D`], two vectors, of
+//! half of the lanes each. So all else is as it is for f32: masks, whole numbers, places in buffers
+//! ([`number`](super::number)).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

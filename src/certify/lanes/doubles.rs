@@ -75,8 +75,8 @@ impl DoubleLanes {
         Scene::new(simd, &self.packed, &self.numbers, &self.buffers)
     }
 
-    /// Samples, by their pixels' columns and rows, and by where their rays pass, in pixels from the middle: of each what
-    /// it brings, where that is certain.
+    /// Samples, by their pixels' columns and rows, and by where their rays pass, in pixels from the middle: of each
+    /// what it brings, where that is certain.
     pub fn samples(
         &self,
         places: &[[u32; 2]],

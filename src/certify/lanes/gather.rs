@@ -14,8 +14,8 @@ const WORD: usize = size_of::<u32>();
 /// Bytes of an f64.
 const DOUBLE: usize = size_of::<f64>();
 
-/// An element of a buffer for each lane, of which fields are read by their places in it (`offset_of`). Lanes that are off
-/// may have any index: they read the last element.
+/// An element of a buffer for each lane, of which fields are read by their places in it (`offset_of`). Lanes that are
+/// off may have any index: they read the last element.
 #[derive(Clone, Copy)]
 pub(super) struct Gather<'a, T, S: Simd> {
     simd: S,

@@ -3,10 +3,10 @@
 //!
 //! Every operation of IEEE arithmetic keeps what the bounds ask of a GPU's, so a pixel that is sure here has its exact
 //! bytes; the others are left to [`ExactTracer`](crate::cpu::pixel::ExactTracer). What is computed is the WGSL itself:
-//! `src/lower` writes `text.rs` in `ambient`, `lit` and `lit_double` from `shaders/`. By hand are rows of pixels (`row`,
-//! with the means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels, `lit/by_hand`
-//! and `lit/walk` for rays from anywhere), and what the text's types are here (`number`, `double`, `vector`, `gather`,
-//! `scene`). [`cpu`](crate::cpu) is the referee.
+//! `src/lower` writes `text.rs` in `ambient`, `lit` and `lit_double` from `shaders/`. By hand are rows of pixels
+//! (`row`, with the means of several samples in [`mean`]), the loops over objects (`primary` for rays of pixels,
+//! `lit/by_hand` and `lit/walk` for rays from anywhere), and what the text's types are here (`number`, `double`,
+//! `vector`, `gather`, `scene`). [`cpu`](crate::cpu) is the referee.
 
 mod ambient;
 #[allow(
@@ -185,8 +185,8 @@ fn levels(level: Level) -> Vec<(&'static str, Level)> {
 /// products of these (docs/NUMERICS.md).
 const MOST_PANES: usize = 900_000;
 
-/// Whether lanes can take a scene: where its bounds can be relied on, rays pass no more panes than bounds count, and the
-/// walk down its tree has room.
+/// Whether lanes can take a scene: where its bounds can be relied on, rays pass no more panes than bounds count, and
+/// the walk down its tree has room.
 fn may_be<X: LaneFormat>(packed: &Packed<X>) -> bool {
     // A ray meets a quadric twice, all else once.
     let panes = |lit: &Lit<X>| {

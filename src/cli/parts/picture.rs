@@ -61,7 +61,8 @@ struct PictureJson<'a> {
     whole: &'a Whole,
 }
 
-/// Parts so large that their files are about 64 MiB, or that they take about half a second on two cores; never too many.
+/// Parts so large that their files are about 64 MiB, or that they take about half a second on two cores; never too
+/// many.
 const PART_BYTES: u64 = 64 << 20;
 const PART_WORK: f64 = 1e6;
 const MOST_PARTS: u32 = 10_000;

@@ -44,8 +44,8 @@ struct Count {
     useless: usize,
 }
 
-/// Compares some pixels of each scene, in numbers of a kind and exactly: `compare` says whether a channel is off by more
-/// than its bound, and whether that is useless.
+/// Compares some pixels of each scene, in numbers of a kind and exactly: `compare` says whether a channel is off by
+/// more than its bound, and whether that is useless.
 fn count<R: Real>(
     asked: impl Fn(&str, &Scene) -> bool,
     pixels: u32,

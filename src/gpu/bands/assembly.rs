@@ -61,8 +61,8 @@ impl Assembly {
         }
     }
 
-    /// Copies a rectangle's pixels to their place, notes which the GPU leaves to the CPU, and takes the records of those
-    /// with sure and doubtful samples.
+    /// Copies a rectangle's pixels to their place, notes which the GPU leaves to the CPU, and takes the records of
+    /// those with sure and doubtful samples.
     pub(super) fn take(&mut self, rectangle: &Rectangle, layout: &Layout, bytes: &[u8]) {
         let [counter, bytes, records] = layout.split(bytes);
         #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The large buffers of dispatches: what the device writes pixels to, and the copy that the host reads. A device keeps
-//! them from one picture to the next, and the first ones are made while the shader compiles: a driver takes up to twenty
-//! milliseconds for them.
+//! them from one picture to the next, and the first ones are made while the shader compiles: a driver takes up to
+//! twenty milliseconds for them.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

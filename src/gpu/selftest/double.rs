@@ -1,6 +1,6 @@
 //! Whether a device computes with f64 as the stage behind f32 takes for granted: Vulkan promises little of it. Operands
-//! go through `shaders/selftest_double.wgsl`, and the results are judged by the host's f64, which is IEEE's; and a small
-//! scene through its composed shader.
+//! go through `shaders/selftest_double.wgsl`, and the results are judged by the host's f64, which is IEEE's; and a
+//! small scene through its composed shader.
 
 mod checks;
 

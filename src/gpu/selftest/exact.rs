@@ -32,8 +32,8 @@ fn may_be_flushed(high: f64, result: f32) -> bool {
     result == 0.0 && high.abs() <= f64::from(f32::MIN_POSITIVE)
 }
 
-/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32. A subnormal sum may be
-/// 0.
+/// Whether `result` is one of the two f32 nearest to `high + low`, the only one if that is an f32. A subnormal sum may
+/// be 0.
 pub(super) fn nearest_two(high: f64, low: f64, result: f32) -> bool {
     let (below, above) = (f64::from(result.next_down()), f64::from(result.next_up()));
     may_be_flushed(high, result)

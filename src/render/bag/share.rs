@@ -39,8 +39,8 @@ pub(super) fn pays_twice(pixels: f64, mine: f64, other: Option<f64>, since: Dura
     pixels / mine < needs / 2.0
 }
 
-/// A worker that uses the same cores as another is tried: it brings a band beside the other's, since the first one takes
-/// longer than those that follow; then it makes one alone, and whoever is the quicker makes the rest.
+/// A worker that uses the same cores as another is tried: it brings a band beside the other's, since the first one
+/// takes longer than those that follow; then it makes one alone, and whoever is the quicker makes the rest.
 #[derive(Debug, Default)]
 pub(super) enum Trial {
     /// The one on trial has not brought its first band.

@@ -1,5 +1,5 @@
-//! Who made, makes and may make which rows: [`hand_out`] gives rows to workers, [`bring_back`] takes what they made, and
-//! [`leave`] gives back what they had.
+//! Who made, makes and may make which rows: [`hand_out`] gives rows to workers, [`bring_back`] takes what they made,
+//! and [`leave`] gives back what they had.
 
 mod bring_back;
 mod hand_out;
@@ -17,8 +17,8 @@ use super::worker::{Activity, Finished, Kind, Role, Worker, hash};
 use crate::frame::Halt;
 use crate::render::Error;
 
-/// Pixels that may be made or under way below the first row that has not gone out: three of the largest bands, 18 MiB of
-/// bytes.
+/// Pixels that may be made or under way below the first row that has not gone out: three of the largest bands, 18 MiB
+/// of bytes.
 const AHEAD: u64 = 6 << 20;
 
 /// Seconds that the one on trial has at least, however quick the other one is.

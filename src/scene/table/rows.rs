@@ -1,5 +1,5 @@
-//! The rows themselves: every attribute of every entity type, and what attributes must keep between them. Below `table`,
-//! which looks them up.
+//! The rows themselves: every attribute of every entity type, and what attributes must keep between them. Below
+//! `table`, which looks them up.
 
 use super::relations::{AIMLESS, ALONG_NORMAL, EMPTY_BOX, FLAT};
 use super::{Attribute, Entity, Field, Relation, Take};

@@ -7,8 +7,8 @@ use crate::prepare::screen_grid::ScreenGrid;
 use crate::shader::format::Format;
 
 impl<F: Format> Packed<F> {
-    /// How many there are of each record, and where lists are divided: what the shaders of two formats have to agree on,
-    /// since both have the features of one.
+    /// How many there are of each record, and where lists are divided: what the shaders of two formats have to agree
+    /// on, since both have the features of one.
     pub fn counts(&self) -> Vec<usize> {
         let mut counts = vec![
             self.objects.len(),

@@ -246,8 +246,8 @@ fn low_light<F: Format>(plane: &prepare::WorldPlane<F::Number>) -> Option<(u32, 
 /// Beyond every position that is looked at, also where f64 knows it: stands for no border, or no end.
 pub(super) const BEYOND: f64 = (1_u128 << 96) as f64;
 
-/// Whether what is known of numbers of this size is so much that their rounding to the format is more than all the rest:
-/// bounds count a rounding, and have little room beside.
+/// Whether what is known of numbers of this size is so much that their rounding to the format is more than all the
+/// rest: bounds count a rounding, and have little room beside.
 fn known<F: Format>(numbers: &[F::Number], size: f64) -> bool {
     // A NaN fails this comparison.
     numbers.iter().all(|n| n.off() <= F::U / 64.0 * size)

@@ -3,8 +3,8 @@
 use crate::real::V3;
 use crate::shader::format::Known;
 
-/// A factor of a colour: one that is not 0 stays so in f32, so that the check of its size sees it. One that is not known
-/// stays so too.
+/// A factor of a colour: one that is not 0 stays so in f32, so that the check of its size sees it. One that is not
+/// known stays so too.
 pub(super) fn factor(value: f64) -> f64 {
     if value.is_nan() {
         value

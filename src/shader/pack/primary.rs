@@ -188,7 +188,8 @@ fn wide<F: Format>(
     }
 }
 
-/// disc = ρ²·W·W − e_z²·F::U·F::U − (e_x·U.y − e_y·U.x)², F::U = W − W_c, from the pixel `anchor`, at which F::U is `u`.
+/// disc = ρ²·W·W − e_z²·F::U·F::U − (e_x·U.y − e_y·U.x)², F::U = W − W_c, from the pixel `anchor`, at which F::U is
+/// `u`.
 fn small<F: Format>(
     camera: &Camera<F::Number>,
     sphere: &prepare::Sphere<F::Number>,

@@ -42,8 +42,8 @@ fn walks(packed: &Packed) -> bool {
     packed.screen_grid.is_some() || packed.bvh_depth > 0
 }
 
-/// What vectors of two widths are sure of is the same. So is what they are in doubt about, but where lanes walk together:
-/// a rival more may be a doubt more.
+/// What vectors of two widths are sure of is the same. So is what they are in doubt about, but where lanes walk
+/// together: a rival more may be a doubt more.
 fn same_in_all_widths(path: &Path, all: &[(&str, Vec<u32>)], walks: bool) {
     let (_, first) = &all[0];
     for (name, words) in all {

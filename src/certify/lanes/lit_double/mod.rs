@@ -59,8 +59,8 @@ mod by_hand {
     }
 }
 
-/// Traces samples, each by its pixel and where in that its ray passes, as many at once as there are lanes: of each what it
-/// brings, where that is certain.
+/// Traces samples, each by its pixel and where in that its ray passes, as many at once as there are lanes: of each what
+/// it brings, where that is certain.
 pub(super) fn samples<S: Simd>(
     scene: &Scene<'_, S>,
     places: &[[u32; 2]],

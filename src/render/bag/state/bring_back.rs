@@ -1,4 +1,5 @@
-//! What is brought back: bands that are finished or cannot be made, how quick who brought them is, and which go out next.
+//! What is brought back: bands that are finished or cannot be made, how quick who brought them is, and which go out
+//! next.
 
 use super::*;
 
@@ -69,8 +70,8 @@ impl State {
         }
     }
 
-    /// How quick those are that another one is tried against, on all their cores; as far as they brought nothing yet, by
-    /// what they were seen to do before. None if nothing is known.
+    /// How quick those are that another one is tried against, on all their cores; as far as they brought nothing yet,
+    /// by what they were seen to do before. None if nothing is known.
     fn speed_against_trial(&self) -> Option<f64> {
         let works = |worker: &&Worker| worker.role == Role::Works && !worker.left;
         let speeds = self.workers.iter().filter(works);

@@ -113,8 +113,9 @@ impl State {
 
     /// A band that somebody else makes, if that is the quicker way to it.
     fn twice(&mut self, me: usize, most: u32) -> Taken {
-        // The CPU stays until all is over: a device that is still busy with a band that another one brought may be found
-        // to be wrong, and all that it brought is to be made again then. Nobody stands by for a device that is done.
+        // The CPU stays until all is over: a device that is still busy with a band that another one brought may be
+        // found to be wrong, and all that it brought is to be made again then. Nobody stands by for a device that is
+        // done.
         let is_device = self.workers[me].kind == Kind::Device;
         if is_device && self.is_made() {
             self.leave(me);

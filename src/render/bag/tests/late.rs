@@ -117,8 +117,8 @@ fn only_the_cpu_compares() {
     });
 }
 
-/// While a driver gets ready it has all cores, for as long as was said; then the CPU goes on, and what it was seen to do
-/// before is what the one on trial has to beat.
+/// While a driver gets ready it has all cores, for as long as was said; then the CPU goes on, and what it was seen to
+/// do before is what the one on trial has to beat.
 #[test]
 fn the_cpu_rests_while_another_one_gets_ready() {
     let bag = Bag::new(WIDTH, 0..12, Some(4));
