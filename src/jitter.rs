@@ -171,6 +171,14 @@ impl<'a> Sampling<'a> {
             .chain(given.iter().copied())
     }
 
+    /// The same where rays are counted from the pixel: a sample is at x + a as f64 rounds it, and what that differs from x
+    /// by is an f64.
+    pub fn rounded_offsets(self, x: u32, y: u32) -> impl Iterator<Item = [f64; 2]> + use<'a> {
+        let rounded = |x: u32, a: f64| (f64::from(x) + a) - f64::from(x);
+        self.offsets(x, y)
+            .map(move |[a, b]| [rounded(x, a), rounded(y, b)])
+    }
+
     /// How many rays.
     pub fn samples(&self) -> u32 {
         match self {

@@ -20,17 +20,16 @@ fn complete_mean(first: u32, pixel: vec2i) -> Traced {
         if ((pixels.words[first + RECORD_HEAD + sample / 32u] >> (sample % 32u)) & 1u) == 0u {
             let one = ray_trace(camera_getdir(pixel, jitter_hash(pixel, sample)));
             add_sample(&traced, one, one.verdict == 0u);
-            traced.verdict |= one.verdict;
+            if one.verdict != 0u {
+                break;
+            }
         }
         if steps > STEPS_LIMIT {
-            traced.verdict = UNDECIDED;
-        }
-        if traced.verdict != 0u {
             break;
         }
         seen += 1u;
     }
-    traced.verdict |= select(UNDECIDED, 0u, seen == SAMPLES);
+    traced.verdict = select(UNDECIDED, 0u, seen == SAMPLES);
     return traced;
 }
 //#end

@@ -92,15 +92,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 //#if any_object
 //#if samples
     var traced: Traced;
-    // Samples that were made: a loop that a driver ends makes fewer.
-    var made = 0u;
+    // Samples that are sure; a loop that a driver ends makes fewer.
+    var sure = 0u;
 //#if partial
     // The same of the samples that are worth keeping should the pixel be doubtful: their bits, and how many they are.
     // What is not among them, for whatever reason, the CPU adds.
     var part: Traced;
     var summed: array<u32, SUMMED_WORDS>;
     var kept = 0u;
-    var sure = 0u;
 //#end
     for (var sample = 0u; sample < SAMPLES; sample += 1u) {
         steps += 1u;
@@ -110,31 +109,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let offset = jitter_hash(pixel, sample);
 //#end
         let one = ray_trace(camera_getdir(pixel, offset));
-        made += 1u;
+        sure += select(0u, 1u, one.verdict == 0u);
 //#if partial
         let fine = (one.verdict == 0u) & all(one.error < vec3f(FINE));
         add_sample(&traced, one, one.verdict == 0u);
         add_sample(&part, one, fine);
         summed[sample / 32u] |= select(0u, 1u << (sample % 32u), fine);
         kept += select(0u, 1u, fine);
-        sure += select(0u, 1u, one.verdict == 0u);
         if steps > STEPS_LIMIT {
             break;
         }
 //#else
         traced.color += one.color * SAMPLE_SHARE;
         traced.error += one.error * SAMPLE_ERROR + SAMPLE_ROUNDINGS * U * traced.color; //~
-        traced.verdict |= one.verdict;
-        if traced.verdict != 0u {
+        if one.verdict != 0u {
             break;
         }
 //#end
     }
-//#if partial
-    traced.verdict = select(UNDECIDED, 0u, (sure == SAMPLES) & (made == SAMPLES));
-//#else
-    traced.verdict |= select(UNDECIDED, 0u, made == SAMPLES);
-//#end
+    traced.verdict = select(UNDECIDED, 0u, sure == SAMPLES);
 //#else
     let traced = ray_trace(camera_getdir(pixel));
 //#end

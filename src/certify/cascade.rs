@@ -207,13 +207,11 @@ impl Brought {
         let started = Instant::now();
         let (mut places, mut offsets, mut first) = (Vec::new(), Vec::new(), vec![0]);
         for Open { at, sampling, part } in open {
-            let [x, y] = at.map(f64::from);
-            let all = (0..).zip(sampling.offsets(at[0], at[1]));
+            let all = (0..).zip(sampling.rounded_offsets(at[0], at[1]));
             let missing = all.filter(|(sample, _)| !part.is_some_and(|part| part.holds(*sample)));
-            for (_, [a, b]) in missing {
+            for (_, offset) in missing {
                 places.push(*at);
-                // A sample is where the sum is, rounded; its difference from the pixel is an f64.
-                offsets.push([(x + a) - x, (y + b) - y]);
+                offsets.push(offset);
             }
             first.push(places.len());
         }

@@ -12,7 +12,7 @@ use super::{Decided, DecidedBy, Tally};
 use crate::certify::lanes::mean::Means;
 use crate::certify::lanes::{LANES, Lanes, OPEN};
 use crate::cpu::pixel::ExactTracer;
-use crate::frame::{Band, Halt, Part, StopRequested, spare};
+use crate::frame::{Band, Halt, StopRequested, spare};
 use crate::gpu::bands::Partials;
 use crate::jitter::Jitter;
 use crate::scene::Scene;
@@ -255,7 +255,7 @@ impl<'a> PixelDecider<'a> {
         let mut words = vec![OPEN; strip.bytes.len() / 3];
         let mut means = lanes.and_then(Lanes::means);
         let at_once = means.as_ref().map_or(words.len(), Means::at_once);
-        let mut left = Left::default();
+        let (mut left, mut parts) = (Vec::new(), Partials::default());
         for start in (0..words.len()).step_by(at_once) {
             let group = start..words.len().min(start + at_once);
             let at = [(first + start) as u32, y];
@@ -276,35 +276,37 @@ impl<'a> PixelDecider<'a> {
                     }
                     continue;
                 }
-                left.push(i, means.as_ref().and_then(|means| means.part(i - start)));
+                left.push(i);
+                if let Some(part) = means.as_ref().and_then(|means| means.part(i - start)) {
+                    parts.push(i as u32, &part);
+                }
             }
-            if left.summed.len() > MOST_SUMMED {
-                self.left(&left, &mut strip, offsets, &mut tally)?;
-                left = Left::default();
+            if parts.words() > MOST_WORDS {
+                self.left((&left, &parts), &mut strip, offsets, &mut tally)?;
+                (left, parts) = (Vec::new(), Partials::default());
             }
         }
-        self.left(&left, &mut strip, offsets, &mut tally)?;
+        self.left((&left, &parts), &mut strip, offsets, &mut tally)?;
         tally.add(DecidedBy::Single, quick);
         Ok(tally)
     }
 
-    /// Decides the pixels of a strip that lanes leave open.
+    /// Decides the pixels of a strip that lanes leave open, by their places, and what is known of them.
     fn left(
         &self,
-        left: &Left,
+        (left, parts): (&[usize], &Partials),
         strip: &mut Strip<'_>,
         offsets: Option<&[[f64; 2]]>,
         tally: &mut Tally,
     ) -> Result<(), Halt> {
-        let left: Vec<_> = left.iter().collect();
-        let open = |&(i, part): &(usize, _)| Open {
+        let open = |&i: &usize| Open {
             at: [(strip.first + i) as u32, strip.y],
             sampling: self.jitter.pixel(offsets, self.width, strip.first + i),
-            part,
+            part: parts.get(i as u32),
         };
         let open: Vec<_> = left.iter().map(open).collect();
         let mut take = |k: usize, decided: Decided, effort: Effort| {
-            let i = left[k].0;
+            let i = left[k];
             tally.decided(decided.by, open[k].at, effort.samples, Duration::ZERO);
             strip.bytes[3 * i..][..3].copy_from_slice(&decided.bytes);
             if let Some(value) = strip.values.get_mut(i) {
@@ -318,49 +320,9 @@ impl<'a> PixelDecider<'a> {
     }
 }
 
-/// With so many words of samples' bits pixels that lanes leave open are decided, whether there are more to come or not.
-const MOST_SUMMED: usize = 1 << 14;
-
-/// Pixels that lanes leave open, by their places, and what is known of them.
-#[derive(Default)]
-struct Left {
-    pixels: Vec<(usize, Option<Known>)>,
-    /// Bits of samples, of one pixel behind those of the other.
-    summed: Vec<u32>,
-}
-
-/// A part whose bits are kept elsewhere.
-struct Known {
-    sum: [f32; 3],
-    error: [f32; 3],
-    summed: Range<usize>,
-}
-
-impl Left {
-    fn push(&mut self, place: usize, part: Option<Part<'_>>) {
-        let known = part.map(|Part { sum, error, summed }| {
-            let start = self.summed.len();
-            self.summed.extend_from_slice(summed);
-            Known {
-                sum,
-                error,
-                summed: start..self.summed.len(),
-            }
-        });
-        self.pixels.push((place, known));
-    }
-
-    fn iter(&self) -> impl Iterator<Item = (usize, Option<Part<'_>>)> {
-        self.pixels.iter().map(|(place, known)| {
-            let part = known.as_ref().map(|known| Part {
-                sum: known.sum,
-                error: known.error,
-                summed: &self.summed[known.summed.clone()],
-            });
-            (*place, part)
-        })
-    }
-}
+/// With so many words of what is known of them pixels that lanes leave open are decided, whether there are more to come
+/// or not.
+const MOST_WORDS: usize = 1 << 14;
 
 /// Pixels side by side, to be decided: values and verdicts only where they are wanted.
 struct Strip<'a> {

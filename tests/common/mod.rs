@@ -117,10 +117,9 @@ pub(crate) fn words_in_f64(
     for (places, words) in places.chunks(64).zip(words.chunks_mut(64)) {
         let (mut all, mut offsets) = (Vec::new(), Vec::new());
         for at in places {
-            let [x, y] = at.map(f64::from);
-            for [a, b] in sampling(*at).offsets(at[0], at[1]) {
+            for offset in sampling(*at).rounded_offsets(at[0], at[1]) {
                 all.push(*at);
-                offsets.push([(x + a) - x, (y + b) - y]);
+                offsets.push(offset);
             }
         }
         let mut brought = vec![None; all.len()];

@@ -103,6 +103,22 @@ impl Partials {
         })
     }
 
+    /// Adds what is known of the pixel at a place, which comes behind all others.
+    pub fn push(&mut self, place: u32, part: &Part<'_>) {
+        self.places.push((place, self.places.len() as u32));
+        self.stride = RECORD_HEAD as usize + part.summed.len();
+        // Nobody looks at what became of it in f64.
+        self.words.extend([place, 0]);
+        let numbers = part.sum.iter().chain(&part.error);
+        self.words.extend(numbers.map(|number| number.to_bits()));
+        self.words.extend(part.summed);
+    }
+
+    /// How many words all that takes.
+    pub fn words(&self) -> usize {
+        self.words.len()
+    }
+
     /// Adds the records that a dispatch left for its rectangle of a band of this width, of `stride` words each.
     pub(super) fn take(
         &mut self,
